@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+namespace heartservo::tracking {
+
+enum class FrameStatus {
+  OK,          ///< the picture is whole
+  UNREADABLE,  ///< the frame exists but its picture is broken; `grey` is empty, `note` says why
+};
+
+/// One picture of the endoscope. The pixels are shared, not copied (cv::Mat).
+struct Frame {
+  cv::Mat grey;                ///< CV_8UC1, empty unless status is OK
+  cv::Mat colour;              ///< CV_8UC3 BGR where the source has colour, else empty; only for people to look at
+  double time_s = 0;           ///< middle of the exposure
+  std::uint64_t sequence = 0;  ///< counts every frame of the source, broken ones too
+  FrameStatus status = FrameStatus::OK;
+  std::string note;  ///< why a frame is not OK, naming the file or device
+};
+
+}  // namespace heartservo::tracking

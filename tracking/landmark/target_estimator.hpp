@@ -1,0 +1,27 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <string>
+
+#include "tracking/planar/track.hpp"
+
+namespace heartservo::tracking {
+
+/// Metric state of the target at one frame.
+struct TargetState {
+  double time_s = 0;
+  std::uint64_t sequence = 0;
+  TrackState state = TrackState::LOST;  ///< LOST: nothing below is valid
+  double quality = 0;
+  Eigen::Isometry3d T_camera_target = Eigen::Isometry3d::Identity();  ///< target frame: centre of the region, m
+  Eigen::Matrix3d position_covariance = Eigen::Matrix3d::Zero();      ///< m^2, camera frame
+};
+
+/// Pixels to metres.
+class TargetEstimator {
+ public:
+  virtual ~TargetEstimator() = default;
+  virtual TargetState estimate(const Track& track) = 0;
+};
+
+}  // namespace heartservo::tracking

@@ -1,0 +1,32 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "tracking/planar/quad.hpp"
+
+namespace heartservo::tracking {
+
+enum class TrackState {
+  OK,         ///< the region is followed
+  UNCERTAIN,  ///< followed, but the picture fits badly (occlusion, glare, blur): use with care
+  LOST,       ///< not found in this frame; corners are the last believed ones
+};
+
+const char* name_of(TrackState state);
+
+/// What a tracker says about one frame.
+struct Track {
+  double time_s = 0;           ///< of the frame
+  std::uint64_t sequence = 0;  ///< of the frame
+  TrackState state = TrackState::LOST;
+  double quality = 0;  ///< 0 (nothing in common with the template) to 1 (identical)
+  Quad corners{};      ///< px, in the picture as taken (distorted)
+  Eigen::Matrix3d H_current_reference = Eigen::Matrix3d::Identity();  ///< on the undistorted pixel plane, det 1
+  double gain = 1;          ///< template grey = gain * picture grey + bias
+  double bias = 0;          ///< grey levels
+  double noise_grey = 0;    ///< robust standard deviation of the remaining grey difference
+  int iterations = 0;       ///< of the last alignment, all pyramid levels
+  bool reacquired = false;  ///< found again in this frame after LOST
+};
+
+}  // namespace heartservo::tracking
