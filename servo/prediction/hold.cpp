@@ -10,6 +10,7 @@ class Hold final : public MotionPredictor {
   void observe(const MotionSample& sample) override {
     if (!sample.position.allFinite() || !(sample.time_s > last_.time_s || !seen_)) return;
     last_ = sample;
+    if (!last_.covariance.allFinite()) last_.covariance.setIdentity();
     seen_ = true;
   }
 

@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include "servo/control/registry.hpp"
+
+namespace heartservo::servo {
+namespace {
+
+ControlState state_of(const Eigen::Vector3d& tip, const Eigen::Vector3d& goal, const Eigen::Vector3d& goal_velocity) {
+  ControlState s;
+  s.period_s = 0.008;
+  s.tip_now = s.tip_then = tip;
+  s.goal_now = goal;
+  s.goal_then.valid = true;
+  s.goal_then.position = goal;
+  s.goal_then.velocity = goal_velocity;
+  return s;
+}
+
+Eigen::Vector3d features(const Eigen::Vector3d& p) { return {p.x() / p.z(), p.y() / p.z(), std::log(p.z())}; }
+
+// The law's promise: each feature error decays as exp(-gain t).
+TEST(Ibvs, EachFeatureErrorDecaysAtTheGain) {
+  const Eigen::Vector3d tip(0.004, -0.003, 0.052), goal(0.001, 0.002, 0.056);
+  const auto law = control_laws().make("ibvs", ControlOptions{7, 30});
+  const Eigen::Vector3d v = law->velocity(state_of(tip, goal, {1, 1, 1}));
+  const double dt = 1e-6;
+  const Eigen::Vector3d rate = (features(tip + v * dt) - features(tip)) / dt;
+  EXPECT_LT((rate + 7 * (features(tip) - features(goal))).norm(), 1e-4);
+}
+
+TEST(Ibvs, ReachesAStillGoal) {
+  for (const auto& name : control_laws().names()) {
+    const auto law = control_laws().make(name, ControlOptions{});
+    Eigen::Vector3d tip(0.006, -0.004, 0.048);
+    const Eigen::Vector3d goal(0.0, 0.003, 0.057);
+    for (int k = 0; k < 250; ++k) tip += 0.008 * law->velocity(state_of(tip, goal, Eigen::Vector3d::Zero()));
+    EXPECT_LT((tip - goal).norm(), 1e-6) << name;
+  }
+}
+
+TEST(Ibvs, FeedForwardAddsTheGoalsVelocityAndPlainDoesNot) {
+  const Eigen::Vector3d p(0.001, 0.002, 0.055), velocity(0.03, -0.02, 0.05);
+  EXPECT_LT((control_laws().make("ibvs_feedforward", {})->velocity(state_of(p, p, velocity)) - velocity).norm(), 1e-12);
+  EXPECT_LT(control_laws().make("ibvs", {})->velocity(state_of(p, p, velocity)).norm(), 1e-12);
+}
+
+TEST(Ibvs, PointsBehindTheCameraGiveNoFiniteVelocity) {
+  for (const auto& name : control_laws().names()) {
+    const auto law = control_laws().make(name, ControlOptions{});
+    EXPECT_FALSE(law->velocity(state_of({0, 0, -0.01}, {0, 0, 0.05}, Eigen::Vector3d::Zero())).allFinite());
+    EXPECT_FALSE(law->velocity(state_of({0, 0, 0.05}, {0, NAN, 0.05}, Eigen::Vector3d::Zero())).allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace heartservo::servo
