@@ -18,9 +18,22 @@ if(HEARTSERVO_SANITIZE)
   target_compile_definitions(heartservo_options INTERFACE HEARTSERVO_SANITIZED)
 endif()
 
+# heartservo_visp_sources(SOURCES...): ViSP 3.5's headers are not C++20 (vpArray2D.h names its constructors
+# vpArray2D<Type>), so a source that includes them itself is compiled as C++17; a header that other sources include must
+# not include them.
+function(heartservo_visp_sources)
+  foreach(source IN LISTS ARGN)
+    file(STRINGS ${source} includes REGEX "^#include <visp3/" LIMIT_COUNT 1)
+    if(includes)
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS -std=c++17 SKIP_PRECOMPILE_HEADERS ON)
+    endif()
+  endforeach()
+endfunction()
+
 # heartservo_floor(NAME LIBRARIES...): the library heartservo::NAME from every source of the current folder.
 function(heartservo_floor name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  heartservo_visp_sources(${sources})
   add_library(heartservo_${name} STATIC ${sources})
   add_library(heartservo::${name} ALIAS heartservo_${name})
   set_target_properties(heartservo_${name} PROPERTIES EXPORT_NAME ${name})

@@ -10,8 +10,8 @@ struct MotionSample {
 };
 
 struct Prediction {
-  bool valid = false;  ///< false until the predictor has seen enough
-  double time_s = 0;   ///< for which the prediction holds
+  bool valid = false;                                    ///< false until the predictor has seen enough
+  double time_s = 0;                                     ///< for which the prediction holds
   Eigen::Vector3d position = Eigen::Vector3d::Zero();    ///< m
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< m/s
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< m^2, of the position

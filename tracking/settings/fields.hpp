@@ -1,7 +1,7 @@
 #pragma once
-// A struct of options lists its fields once, in `void fields(FieldVisitor&)`. Reading from YAML (yaml_reader.hpp), writing
-// the resolved configuration (yaml_writer.hpp), the key-by-key documentation and the JSON schema (document.hpp) all
-// come from that one list, so they cannot disagree.
+// A struct of options lists its fields once, in `void fields(FieldVisitor&)`. Reading from YAML (yaml_reader.hpp),
+// writing the resolved configuration (yaml_writer.hpp), the key-by-key documentation and the JSON schema (document.hpp)
+// all come from that one list, so they cannot disagree.
 #include <Eigen/Core>
 #include <limits>
 #include <string>

@@ -17,9 +17,7 @@ class YamlWriter final : public FieldVisitor {
   void field(const FieldInfo& info, double& value) override { key(info.name) << fmt::format("{}", value); }
   void field(const FieldInfo& info, int& value) override { key(info.name) << value; }
   void field(const FieldInfo& info, bool& value) override { key(info.name) << value; }
-  void field(const FieldInfo& info, std::string& value) override {
-    key(info.name) << YAML::DoubleQuoted << value;
-  }
+  void field(const FieldInfo& info, std::string& value) override { key(info.name) << YAML::DoubleQuoted << value; }
   void field(const FieldInfo& info, std::vector<double>& value, std::size_t) override {
     key(info.name) << YAML::Flow << YAML::BeginSeq;
     for (const double v : value) out_ << fmt::format("{}", v);

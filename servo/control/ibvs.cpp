@@ -1,0 +1,72 @@
+// Image-based visual servoing with a fixed endoscope (eye-to-hand), through ViSP: the features x, y and log(Z/Z*) of
+// the tool tip are driven to those of the goal (Chaumette & Hutchinson, IEEE RAM 2006; Nakamura et al., ICRA 2001).
+// ibvs uses the tip as it is seen now; ibvs_feedforward closes the loop on where tip and goal will be when the command
+// acts, and adds the goal's velocity, so that only what was foreseen wrongly is left to the gain.
+#include <visp3/core/vpException.h>
+#include <visp3/visual_features/vpFeatureDepth.h>
+#include <visp3/visual_features/vpFeaturePoint.h>
+#include <visp3/vs/vpServo.h>
+
+#include <cmath>
+
+#include "servo/control/registry.hpp"
+
+namespace heartservo::servo {
+
+namespace {
+
+class Ibvs final : public ControlLaw {
+ public:
+  Ibvs(double gain, bool feed_forward) : feed_forward_(feed_forward) {
+    servo_.setServo(vpServo::EYETOHAND_L_cVe_eJe);
+    servo_.setInteractionMatrixType(vpServo::CURRENT);
+    servo_.setLambda(gain);
+    point_.buildFrom(0, 0, 1);
+    point_goal_.buildFrom(0, 0, 1);
+    depth_.buildFrom(0, 0, 1, 0);
+    depth_goal_.buildFrom(0, 0, 1, 0);
+    servo_.addFeature(point_, point_goal_);
+    servo_.addFeature(depth_, depth_goal_);
+    servo_.set_cVe(vpVelocityTwistMatrix());  // velocities are commanded along the camera's axes
+    vpMatrix eJe(6, 3);                       // the tool only translates
+    for (unsigned i = 0; i < 3; ++i) eJe[i][i] = 1;
+    servo_.set_eJe(eJe);
+  }
+  ~Ibvs() override { servo_.kill(); }
+
+  Eigen::Vector3d velocity(const ControlState& state) override {
+    const Eigen::Vector3d& tip = feed_forward_ ? state.tip_then : state.tip_now;
+    const Eigen::Vector3d& goal = state.goal_then.position;
+    if (!(tip.z() > 0 && goal.z() > 0) || !tip.allFinite() || !goal.allFinite())
+      return Eigen::Vector3d::Constant(NAN);  // the guard refuses it
+    const double x = tip.x() / tip.z(), y = tip.y() / tip.z();
+    point_.buildFrom(x, y, tip.z());
+    depth_.buildFrom(x, y, tip.z(), std::log(tip.z() / goal.z()));
+    point_goal_.buildFrom(goal.x() / goal.z(), goal.y() / goal.z(), goal.z());
+    try {
+      const vpColVector v = servo_.computeControlLaw();
+      const Eigen::Vector3d proportional(v[0], v[1], v[2]);
+      return feed_forward_ ? Eigen::Vector3d(proportional + state.goal_then.velocity) : proportional;
+    } catch (const vpException&) {
+      return Eigen::Vector3d::Constant(NAN);
+    }
+  }
+
+ private:
+  bool feed_forward_;
+  vpServo servo_;
+  vpFeaturePoint point_, point_goal_;
+  vpFeatureDepth depth_, depth_goal_;
+};
+
+}  // namespace
+
+std::unique_ptr<ControlLaw> make_ibvs(const ControlOptions& options) {
+  return std::make_unique<Ibvs>(options.gain, false);
+}
+
+std::unique_ptr<ControlLaw> make_ibvs_feedforward(const ControlOptions& options) {
+  return std::make_unique<Ibvs>(options.gain_feedforward, true);
+}
+
+}  // namespace heartservo::servo

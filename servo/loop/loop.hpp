@@ -1,0 +1,65 @@
+#pragma once
+// One pass of the house per frame: Frame -> Track -> TargetState -> Prediction -> velocity -> guard -> ToolRobot. The
+// only place that knows the order, the clock and the latency. Truth is no part of any type in here; a score (score.hpp)
+// watches from outside.
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "servo/control/control_law.hpp"
+#include "servo/loop/command_history.hpp"
+#include "servo/loop/loop_options.hpp"
+#include "servo/loop/loop_record.hpp"
+#include "servo/prediction/motion_predictor.hpp"
+#include "servo/robot/tip_estimator.hpp"
+#include "servo/robot/tool_robot.hpp"
+#include "servo/safety/command_guard.hpp"
+#include "tracking/frames/frame_source.hpp"
+#include "tracking/landmark/target_estimator.hpp"
+#include "tracking/planar/target_tracker.hpp"
+
+namespace heartservo::servo {
+
+/// The stages, made by name from the registries.
+struct LoopStages {
+  std::unique_ptr<tracking::TargetTracker> target_tracker, marker_tracker;
+  std::unique_ptr<tracking::TargetEstimator> target_estimator, marker_estimator;
+  std::unique_ptr<MotionPredictor> predictor;
+  std::unique_ptr<ControlLaw> control_law;
+};
+
+class Loop {
+ public:
+  /// `stopwatch` gives seconds from any origin, for the timing columns only.
+  Loop(tracking::FrameSource& frames, ToolRobot& robot, LoopStages stages, const LoopOptions& options,
+       const Eigen::Vector3d& marker_to_tip_camera, std::function<double()> stopwatch);
+
+  /// Reads the first frame and shows the trackers their regions. "" or the reason why they refuse.
+  std::string start(const tracking::Quad& target_region, const tracking::Quad& marker_region);
+
+  /// One frame; false at the end of the frames or when the guard stopped the loop (see stop_reason()).
+  bool step(LoopRecord& record);
+
+  /// "" while all is well, else why the guard ended the loop.
+  const std::string& stop_reason() const { return stop_reason_; }
+
+ private:
+  void perceive(LoopRecord& record);
+  void decide(LoopRecord& record);
+
+  tracking::FrameSource& frames_;
+  ToolRobot& robot_;
+  LoopStages stages_;
+  LoopOptions options_;
+  ToolRobotData robot_data_;
+  TipEstimator tip_estimator_;
+  CommandGuard guard_;
+  CommandHistory history_;
+  std::function<double()> stopwatch_;
+  tracking::Frame frame_;
+  double last_seen_s_ = 0;
+  bool first_ = true, ever_seen_ = false;
+  std::string stop_reason_;
+};
+
+}  // namespace heartservo::servo

@@ -1,0 +1,14 @@
+#pragma once
+// The numbers of a report's plots as JSON, for the script of the page.
+#include <string>
+
+#include "tools/report/report.hpp"
+
+namespace heartservo::tools {
+
+/// {"tables":[{"time_s":[...],...}],"plots":[...],"state":{"table":0,"column":"..."}|null}: every row, of the columns
+/// that are drawn; 6 significant digits (9 for time), null for "no value". Throws std::invalid_argument for a column
+/// that its table lacks, or a plot without a table.
+std::string plot_data(const Report& report);
+
+}  // namespace heartservo::tools

@@ -1,0 +1,64 @@
+#pragma once
+// report.html: one self-contained page that opens offline, on a desktop, on a phone and on paper. Its first screen
+// answers the question of the run (one sentence, one number, one plot, one picture); plots, tables and the resolved
+// configuration follow.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/time_table.hpp"
+
+namespace heartservo::tools {
+
+struct ReportPicture {
+  std::string caption;
+  cv::Mat bgr;  ///< 8 bit, 3 channels or grey; wider than 1280 px it is reduced to that
+};
+
+struct ReportSeries {
+  std::string label;   ///< "heart z"
+  std::string column;  ///< of the table
+};
+
+/// Columns over time. All plots zoom and point together.
+struct ReportPlot {
+  std::string title;
+  std::string y_label;  ///< with the unit people read: "mm"
+  std::vector<ReportSeries> series;
+  double scale = 1;                  ///< from the table's unit to the plot's (m to mm: 1000)
+  std::string note;                  ///< one line below the title, "" for none
+  const TimeTable* table = nullptr;  ///< nullptr: the report's
+};
+
+/// Rows of text: key and value (no header), or a comparison with a header. Cells that look like numbers align right.
+struct ReportTable {
+  std::string title;
+  std::vector<std::string> header;  ///< empty for key and value
+  std::vector<std::vector<std::string>> rows;
+  std::string note;
+};
+
+struct Report {
+  std::string title;                    ///< "servo pig_2007"
+  std::string headline;                 ///< the answer in one sentence: "The tip stands still to 0.41 mm RMS ..."
+  std::string headline_number;          ///< "0.41"
+  std::string headline_unit;            ///< "mm RMS residual"
+  std::vector<std::string> notices;     ///< what a reader must know first: "ended by Ctrl-C after 12 s of 60 s"
+  std::vector<ReportPlot> plots;        ///< the first is on the first screen: residual against motion
+  std::vector<ReportPicture> pictures;  ///< so is the first of these
+  std::vector<ReportTable> tables;
+  const TimeTable* table = nullptr;  ///< must live until write_report() returns
+  std::string state_column;          ///< of `table`: 0 OK, 1 uncertain, 2 lost; "" for no state strip
+  std::string config_yaml;           ///< resolved configuration; "" for none
+  nlohmann::json summary;            ///< summary.json, embedded for scripts and shown; null for none
+};
+
+/// The page as text. Throws std::invalid_argument for a column that the table lacks.
+std::string report_html(const Report& report);
+
+/// Throws ConfigError when `file` cannot be written.
+void write_report(const Report& report, const std::filesystem::path& file);
+
+}  // namespace heartservo::tools

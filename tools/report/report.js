@@ -1,0 +1,176 @@
+// Draws the plots and the state strip from the JSON in #data. All plots zoom and point together (synchronizer.js of
+// dygraphs); colours come from the style sheet, so that light, dark and paper are decided in one place.
+(function () {
+  'use strict';
+  const data = JSON.parse(document.getElementById('data').textContent);
+  const STATES = ['OK', 'uncertain', 'lost'];
+  const PRINT_WIDTH = 680;  // px: the text width of a sheet of A4
+
+  const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const short = v => v === null || !isFinite(v) ? '–' : Math.abs(v) >= 1000 ? v.toFixed(0) : String(+v.toPrecision(4));
+  const seconds = v => v.toFixed(3) + ' s';
+
+  function rows(plot) {
+    const columns = data.tables[plot.table];
+    const series = plot.series.map(s => columns[s.column]);
+    const value = v => v === null ? null : v * plot.scale;
+    return columns.time_s.map((t, i) => [t].concat(series.map(s => value(s[i]))));
+  }
+
+  function colours(count) {
+    return Array.from({length: count}, (_, i) => css('--s' + (i % 7)));
+  }
+
+  // What a screen reader says about a plot.
+  function describe(plot, table) {
+    const parts = plot.series.map((s, i) => {
+      let sum = 0, n = 0, low = Infinity, high = -Infinity;
+      for (const row of table) {
+        const v = row[i + 1];
+        if (v === null) continue;
+        sum += v * v; n += 1; low = Math.min(low, v); high = Math.max(high, v);
+      }
+      return n === 0 ? s.label + ': no values'
+          : `${s.label}: from ${short(low)} to ${short(high)} ${plot.unit}, RMS ${short(Math.sqrt(sum / n))}`;
+    });
+    return plot.title + '. ' + parts.join('; ') + '.';
+  }
+
+  function legend(d) {
+    return d.series.map(s => `<span class="key"><i style="border-color:${s.color}"></i>${s.labelHTML}` +
+        `<b>${d.x === undefined ? '' : s.yHTML === undefined ? '–' : s.yHTML}</b></span>`).join('') +
+        (d.x === undefined ? '' : `<span class="quiet">at ${d.xHTML}</span>`);
+  }
+
+  // Spans of frames that are not OK: [from, to, state] in seconds.
+  function troubled() {
+    if (!data.state) return [];
+    const t = data.tables[data.state.table].time_s, s = data.tables[data.state.table][data.state.column];
+    const spans = [];
+    for (let i = 0; i < t.length; ++i) {
+      if (!s[i]) continue;
+      const last = spans[spans.length - 1], end = i + 1 < t.length ? t[i + 1] : t[i];
+      if (last && last[2] === s[i] && last[1] === t[i]) last[1] = end; else spans.push([t[i], end, s[i]]);
+    }
+    return spans;
+  }
+  const spans = troubled();
+
+  function paint(context, g, top, height, colour) {
+    const [from, to] = g.xAxisRange(), area = g.getArea();
+    for (const [a, b, state] of spans) {
+      if (b < from || a > to) continue;
+      const x0 = Math.max(g.toDomXCoord(a), area.x), x1 = Math.min(g.toDomXCoord(b), area.x + area.w);
+      context.fillStyle = colour(state);
+      context.fillRect(x0, top(state), Math.max(x1 - x0, 1.5), height(state));
+    }
+  }
+
+  // One line in time, below the first plot: state by colour and by height, so that neither is needed alone.
+  function strip(g) {
+    const canvas = document.getElementById('strip');
+    if (!canvas || !data.state) return;
+    const ratio = window.devicePixelRatio || 1, w = g.size().width, h = 22, area = g.getArea();
+    canvas.width = w * ratio; canvas.height = h * ratio;
+    canvas.style.width = w + 'px';
+    const context = canvas.getContext('2d');
+    context.scale(ratio, ratio);
+    context.fillStyle = css('--ok');
+    context.fillRect(area.x, 15, area.w, 5);
+    paint(context, g, s => s === 2 ? 2 : 8, s => s === 2 ? 18 : 12, s => css(s === 2 ? '--lost' : '--uncertain'));
+  }
+
+  // dygraphs takes every finger for a pan and so would stop a phone from scrolling the page: only two fingers zoom.
+  function interaction() {
+    const base = Dygraph.defaultInteractionModel, two = e => e.touches.length > 1;
+    return Object.assign({}, base, {
+      touchstart(e, g, context) { if (two(e)) base.touchstart(e, g, context); },
+      touchmove(e, g, context) { if (two(e)) base.touchmove(e, g, context); }
+    });
+  }
+
+  function look(count) {
+    return {
+      colors: colours(count), axisLineColor: css('--line'), gridLineColor: css('--line'),
+      rangeSelectorPlotStrokeColor: css('--quiet'), rangeSelectorPlotFillColor: css('--line'),
+      rangeSelectorPlotFillGradientColor: css('--soft'), rangeSelectorBackgroundStrokeColor: css('--line'),
+      rangeSelectorForegroundStrokeColor: css('--quiet'), rangeSelectorVeilColour: css('--veil')
+    };
+  }
+
+  const graphs = [];
+  data.plots.forEach((plot, index) => {
+    const place = document.getElementById('plot' + index), table = rows(plot);
+    if (!place) return;
+    place.setAttribute('aria-label', describe(plot, table));
+    if (table.length === 0) { place.textContent = 'No frames.'; place.style.height = 'auto'; return; }
+    const first = index === 0;
+    const g = new Dygraph(place, table, Object.assign({
+      labels: ['time'].concat(plot.series.map(s => s.label)), labelsDiv: document.getElementById('legend' + index),
+      legend: 'always', legendFormatter: legend, strokeWidth: 1.3, highlightCircleSize: 3, axisLabelFontSize: 12,
+      xRangePad: 0, interactionModel: interaction(), showRangeSelector: first, rangeSelectorHeight: 28,
+      axes: {
+        x: {valueFormatter: seconds, axisLabelFormatter: v => +v.toFixed(6) + (first ? ' s' : ''), pixelsPerLabel: 70},
+        y: {valueFormatter: short, axisLabelWidth: 44, pixelsPerLabel: 32}
+      },
+      underlayCallback: (context, area, me) => paint(context, me, () => area.y, () => area.h,
+          s => css(s === 2 ? '--shade-lost' : '--shade-uncertain')),
+      drawCallback: me => {
+        document.body.classList.toggle('zoomed', me.isZoomed('x'));
+        if (first) strip(me);
+      }
+    }, look(plot.series.length)));
+    place.addEventListener('keydown', e => keys(e, g));
+    graphs.push({g, count: plot.series.length});
+  });
+  if (graphs.length > 1) Dygraph.synchronize(graphs.map(p => p.g), {selection: true, zoom: true, range: false});
+
+  function whole() { if (graphs.length) graphs[0].g.resetZoom(); }
+  document.querySelectorAll('button.whole').forEach(b => b.addEventListener('click', whole));
+
+  // Arrows pan, + and - zoom, 0 shows the whole run.
+  function keys(e, g) {
+    if (e.ctrlKey || e.metaKey || e.altKey) return;
+    const [from, to] = g.xAxisRange(), [low, high] = g.xAxisExtremes(), width = to - from;
+    const show = (a, b) => g.updateOptions({dateWindow: [Math.max(a, low), Math.min(b, high)]});
+    const move = d => show(Math.min(from + d, high - width), Math.max(to + d, low + width));
+    const actions = {
+      ArrowLeft: () => move(-width / 5), ArrowRight: () => move(width / 5),
+      '+': () => show(from + width / 4, to - width / 4), '=': () => show(from + width / 4, to - width / 4),
+      '-': () => show(from - width / 2, to + width / 2), '0': whole, Home: whole
+    };
+    if (!actions[e.key]) return;
+    e.preventDefault();
+    actions[e.key]();
+  }
+
+  function shares() {
+    const place = document.getElementById('shares');
+    if (!place || !data.state) return;
+    const s = data.tables[data.state.table][data.state.column], count = [0, 0, 0];
+    for (const v of s) count[v === null ? 2 : v] += 1;
+    const names = ['--ok', '--uncertain', '--lost'];
+    place.innerHTML = STATES.map((name, i) => `<span class="key"><i style="background:var(${names[i]})"></i>${name} ` +
+        `${(100 * count[i] / Math.max(s.length, 1)).toFixed(1)} %</span>`).join('');
+  }
+  shares();
+
+  function recolour() { graphs.forEach(p => p.g.updateOptions(look(p.count))); }
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', recolour);
+  // The window does not resize for paper.
+  const open = [];
+  addEventListener('beforeprint', () => {
+    graphs.forEach(p => { p.g.resize(PRINT_WIDTH, 190); });
+    recolour();
+    document.querySelectorAll('details.print:not([open])').forEach(d => { d.open = true; open.push(d); });
+  });
+  addEventListener('afterprint', () => {
+    graphs.forEach(p => {
+      p.g.graphDiv.parentNode.style.width = p.g.graphDiv.parentNode.style.height = '';
+      p.g.resize();
+    });
+    recolour();
+    open.splice(0).forEach(d => { d.open = false; });
+  });
+  document.documentElement.dataset.plots = graphs.length;
+})();

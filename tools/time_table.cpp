@@ -1,0 +1,152 @@
+#include "tools/time_table.hpp"
+
+#include <fmt/compile.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+#include "tracking/settings/errors.hpp"
+#include "tracking/settings/yaml_reader.hpp"
+
+namespace heartservo::tools {
+
+namespace {
+
+[[noreturn]] void reject(const std::string& what) { throw std::invalid_argument("TimeTable: " + what); }
+
+std::string_view trimmed(std::string_view text) {
+  const auto from = text.find_first_not_of(" \t");
+  return from == text.npos ? "" : text.substr(from, text.find_last_not_of(" \t") - from + 1);
+}
+
+// Splits at commas into `cells` (kept between lines, so that reading allocates once).
+void split(std::string_view line, std::vector<std::string_view>& cells) {
+  cells.clear();
+  for (std::size_t comma; (comma = line.find(',')) != line.npos; line.remove_prefix(comma + 1))
+    cells.push_back(trimmed(line.substr(0, comma)));
+  cells.push_back(trimmed(line));
+}
+
+struct Lines {
+  std::string_view rest;
+  int number = 0;
+
+  // Skips empty lines; understands \r\n.
+  bool next(std::string_view& line) {
+    while (!rest.empty()) {
+      const auto end = std::min(rest.find('\n'), rest.size());
+      line = rest.substr(0, end);
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+      if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+      ++number;
+      if (!line.empty()) return true;
+    }
+    return false;
+  }
+};
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in || !std::filesystem::is_regular_file(file))
+    throw InputError(fmt::format("{}: cannot be read; check the path and its permissions", file.string()));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TimeTable::TimeTable(std::vector<std::string> columns, std::size_t rows)
+    : names_(std::move(columns)), values_(names_.size()) {
+  if (names_.empty() || names_[0] != "time_s") reject("the first column must be time_s");
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    const std::string& name = names_[i];
+    const bool printable = std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= ' ' && c != 127; });
+    if (name.empty() || !printable || name.find_first_of(",\"") != name.npos || trimmed(name) != name)
+      reject(fmt::format("column {} is named '{}'; a name must be printable, without comma and quote", i + 1, name));
+    if (std::find(names_.begin(), names_.begin() + i, name) != names_.begin() + i)
+      reject(fmt::format("column '{}' is there twice", name));
+  }
+  reserve(rows);
+}
+
+void TimeTable::reserve(std::size_t rows) {
+  for (auto& values : values_) values.reserve(rows);
+}
+
+void TimeTable::append(std::span<const double> row) {
+  if (row.size() != names_.size())
+    reject(fmt::format("append() got {} values for {} columns", row.size(), names_.size()));
+  if (!std::isfinite(row[0]) || (rows() > 0 && row[0] <= time_s().back()))
+    reject(fmt::format("append() got time {} s after {} s; times must be finite and increase", row[0],
+                       rows() > 0 ? time_s().back() : -std::numeric_limits<double>::infinity()));
+  for (std::size_t i = 0; i < row.size(); ++i) values_[i].push_back(row[i]);
+}
+
+bool TimeTable::has(std::string_view column) const {
+  return std::find(names_.begin(), names_.end(), column) != names_.end();
+}
+
+std::span<const double> TimeTable::column(std::string_view name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (found == names_.end()) reject(fmt::format("no column '{}'{}", name, did_you_mean(std::string(name), names_)));
+  return values_[static_cast<std::size_t>(found - names_.begin())];
+}
+
+void TimeTable::write_csv(const std::filesystem::path& file) const {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "{}\n", fmt::join(names_, ","));
+  for (std::size_t row = 0; row < rows(); ++row)
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      if (!std::isnan(values_[i][row])) fmt::format_to(out, FMT_COMPILE("{}"), values_[i][row]);
+      text.push_back(i + 1 < values_.size() ? ',' : '\n');
+    }
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (!stream) throw ConfigError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+}
+
+TimeTable TimeTable::read_csv(const std::filesystem::path& file) {
+  const std::string text = read_text(file);
+  Lines lines{text};
+  if (lines.rest.starts_with("\xEF\xBB\xBF")) lines.rest.remove_prefix(3);
+  const auto fail = [&](const std::string& what) {
+    throw InputError(fmt::format("{}:{}: {}", file.string(), std::max(lines.number, 1), what));
+  };
+  std::string_view line;
+  std::vector<std::string_view> cells;
+  if (!lines.next(line)) fail("is empty; expected a header that begins with time_s");
+  split(line, cells);
+  try {
+    TimeTable table({cells.begin(), cells.end()}, static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
+    std::vector<double> row(cells.size());
+    while (lines.next(line)) {
+      split(line, cells);
+      if (cells.size() != row.size()) fail(fmt::format("{} cells under {} columns", cells.size(), row.size()));
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        row[i] = std::numeric_limits<double>::quiet_NaN();
+        const char* end = cells[i].data() + cells[i].size();
+        const auto [rest, error] = std::from_chars(cells[i].data(), end, row[i]);
+        if (!cells[i].empty() && (error != std::errc{} || rest != end))
+          fail(fmt::format("'{}' under {} is not a number", cells[i], table.names_[i]));
+      }
+      table.append(row);
+    }
+    return table;
+  } catch (const std::invalid_argument& e) {
+    fail(e.what());
+    throw;
+  }
+}
+
+}  // namespace heartservo::tools

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <visp3/core/vpXmlParserCamera.h>
+
+#include <iostream>
+#include <regex>
+#include <sstream>
+
+#include "tracking/camera/camera_formats.hpp"
+#include "tracking/settings/errors.hpp"
+
+namespace heartservo::tracking {
+
+namespace {
+
+// ViSP's parser reports on stdout, where a command's JSON goes. Sends both streams nowhere for the length of a scope.
+class QuietStreams {
+ public:
+  QuietStreams() : out_(std::cout.rdbuf(sink_.rdbuf())), error_(std::cerr.rdbuf(sink_.rdbuf())) {}
+  ~QuietStreams() {
+    std::cout.rdbuf(out_);
+    std::cerr.rdbuf(error_);
+  }
+  QuietStreams(const QuietStreams&) = delete;
+  QuietStreams& operator=(const QuietStreams&) = delete;
+
+ private:
+  std::ostringstream sink_;
+  std::streambuf* out_;
+  std::streambuf* error_;
+};
+
+// The parser wants the camera's exact name before it reads anything.
+std::vector<std::string> camera_names(std::string text) {
+  for (auto from = text.find("<!--"); from != std::string::npos; from = text.find("<!--", from)) {
+    const auto to = text.find("-->", from);
+    text.erase(from, to == std::string::npos ? to : to + 3 - from);
+  }
+  std::vector<std::string> names;
+  static const std::regex name("<name>([^<]*)</name>");
+  for (auto from = text.find("<camera>"); from != std::string::npos;) {
+    const auto to = text.find("<camera>", from + 1);
+    const std::string block = text.substr(from, to == std::string::npos ? to : to - from);
+    std::smatch found;
+    names.push_back(std::regex_search(block, found, name) ? found[1].str() : "");
+    from = to;
+  }
+  return names;
+}
+
+}  // namespace
+
+Camera read_visp_camera(const std::string& text, const std::string& file) {
+  const auto names = camera_names(text);
+  if (names.empty()) throw InputError(file + ": holds no <camera>; expected ViSP's or OpenCV's XML");
+  if (names.size() > 1)
+    throw InputError(
+        fmt::format("{}: holds {} cameras ({}); keep the one to use", file, names.size(), fmt::join(names, ", ")));
+  for (const auto model :
+       {vpCameraParameters::perspectiveProjWithDistortion, vpCameraParameters::perspectiveProjWithoutDistortion}) {
+    vpXmlParserCamera parser;
+    vpCameraParameters parameters;
+    bool found = false;
+    {
+      const QuietStreams quiet;
+      found = parser.parse(parameters, file, names.front(), model) == vpXmlParserCamera::SEQUENCE_OK;
+    }
+    if (!found) continue;
+    if (parser.getWidth() == 0 || parser.getHeight() == 0)
+      throw InputError(fmt::format("{}: {}: is missing or 0; add the size of the picture in px", file,
+                                   parser.getWidth() == 0 ? "image_width" : "image_height"));
+    Camera camera;
+    camera.width = static_cast<int>(parser.getWidth());
+    camera.height = static_cast<int>(parser.getHeight());
+    set_matrix(camera,
+               {parameters.get_px(), 0, parameters.get_u0(), 0, parameters.get_py(), parameters.get_v0(), 0, 0, 1},
+               file, "px, py, u0, v0");
+    // ViSP: u = u0 + px x (1 + kud r^2), exactly eq. 3 with k1 alone
+    if (model == vpCameraParameters::perspectiveProjWithDistortion)
+      set_distortion(camera, {parameters.get_kud(), 0, 0, 0}, file, "kud");
+    return camera;
+  }
+  if (text.find("KannalaBrandt") != std::string::npos)
+    throw InputError(file +
+                     ": model.type: Kannala-Brandt (fish-eye) is not supported; calibrate as "
+                     "perspectiveProjWithDistortion");
+  throw InputError(file +
+                   ": model: no complete perspectiveProjWithDistortion (px, py, u0, v0, kud, kdu) or "
+                   "perspectiveProjWithoutDistortion; save it again with vpXmlParserCamera");
+}
+
+}  // namespace heartservo::tracking

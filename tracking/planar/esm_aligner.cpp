@@ -1,0 +1,134 @@
+#include "tracking/planar/esm_aligner.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "tracking/planar/normal_equations.hpp"
+#include "tracking/planar/sl3.hpp"
+
+namespace heartservo::tracking {
+
+namespace {
+
+constexpr int kSmallestSide = 9;        // points; a coarser template says nothing
+constexpr double kNear_px = 0.05;       // from here on, finer sampling pays; a coarse level need not come nearer
+constexpr double kSmallestShare = 0.3;  // of the template's points must be in the picture
+
+class EsmAligner final : public PatchAligner {
+ public:
+  explicit EsmAligner(const EsmOptions& options) : options_(options) {}
+
+  void learn(const ImagePyramid& picture, const Camera& camera, const Eigen::Matrix3d& G, int side_x,
+             int side_y) override {
+    camera_ = camera;
+    patches_.clear();
+    usable_.clear();
+    for (int level = 0; level < picture.levels(); ++level) {
+      const int width = (side_x >> level) + 1, height = (side_y >> level) + 1;
+      if (level > 0 && std::min(width, height) < kSmallestSide) break;
+      patches_.push_back(make_patch(picture.level(level), camera, G, width, height));
+      double usable = 0;
+      for (const float u : patches_.back().usable) usable += static_cast<double>(u);
+      usable_.push_back(usable);
+    }
+    half_side_px_ = 0.5 * std::max(side_x, side_y);
+    buffers_.resize(patches_.front().size());
+  }
+
+  const Patch& patch(int level) const override {
+    return patches_[static_cast<std::size_t>(std::min(level, static_cast<int>(patches_.size()) - 1))];
+  }
+
+  Alignment align(const ImagePyramid& picture, const Alignment& start, int coarsest) override {
+    Alignment a = start;
+    a.iterations = 0;
+    coarsest = std::min({coarsest, picture.levels() - 1, static_cast<int>(patches_.size()) - 1});
+    for (int level = coarsest; level >= 0; --level)
+      // A coarse level has too few points for the perspective terms: affine is enough to come near.
+      if (!align_level(picture.level(level), level, level == 0 ? 8 : 6, a)) return a;
+    return a;
+  }
+
+ private:
+  bool align_level(const PyramidLevel& picture, int level, int parameters, Alignment& a) {
+    const Patch& patch = patches_[static_cast<std::size_t>(level)];
+    const double usable = usable_[static_cast<std::size_t>(level)];
+    a.converged = false;
+    // Bilinear sampling to come near, cubic for the last steps at full resolution.
+    Interpolation interpolation = Interpolation::LINEAR;
+    bool done = false;
+    for (int i = 0; i < options_.max_iterations && !done; ++i, ++a.iterations) {
+      const AlignmentPass pass = run_pass(picture, patch, interpolation, a);
+      if (pass.points < kSmallestShare * usable) return false;
+      Vector10d step;
+      if (!solve(pass, parameters, step)) return false;
+      const Eigen::Matrix3d M = sl3_exp(step.head<8>());
+      a.G_plane_patch = to_sl3(a.G_plane_patch * M);
+      a.gain += step[8];
+      a.bias += step[9];
+      if (!a.G_plane_patch.allFinite() || !(a.gain > 0.05 && a.gain < 20)) return false;
+      const double moved_px = corner_step(M) * half_side_px_;
+      if (level == 0 && interpolation == Interpolation::LINEAR)
+        interpolation = moved_px < kNear_px ? Interpolation::CUBIC : Interpolation::LINEAR;
+      else
+        done = moved_px < (level == 0 ? options_.step_px : kNear_px * (1 << level));
+    }
+    if (level == 0) judge(picture, patch, usable, a);
+    a.converged = true;
+    return true;
+  }
+
+  AlignmentPass run_pass(const PyramidLevel& picture, const Patch& patch, Interpolation interpolation,
+                         const Alignment& a) {
+    warp(picture, camera_, a.G_plane_patch, patch, interpolation, buffers_.grey.data(), buffers_.inside.data());
+    return esm_pass(patch, a.gain, a.bias, buffers_);
+  }
+
+  // Solves for the first `parameters` of SL(3) and the two of the illumination.
+  static bool solve(const AlignmentPass& pass, int parameters, Vector10d& step) {
+    Matrix10d A = pass.JtJ;
+    Vector10d b = pass.Jtr;
+    for (int k = parameters; k < 8; ++k) {
+      A.row(k).setZero();
+      A.col(k).setZero();
+      A(k, k) = 1;
+      b(k) = 0;
+    }
+    A.diagonal() *= 1 + 1e-9;
+    const Eigen::LDLT<Matrix10d> ldlt(A);
+    if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) return false;
+    step = -ldlt.solve(b);
+    return step.allFinite();
+  }
+
+  // Largest move of a corner of [-1, 1]^2 under M, in patch coordinates.
+  static double corner_step(const Eigen::Matrix3d& M) {
+    double largest = 0;
+    for (const double x : {-1.0, 1.0})
+      for (const double y : {-1.0, 1.0})
+        largest = std::max(largest, ((M * Eigen::Vector3d(x, y, 1)).hnormalized() - Eigen::Vector2d(x, y)).norm());
+    return largest;
+  }
+
+  void judge(const PyramidLevel& picture, const Patch& patch, double usable, Alignment& a) {
+    const AlignmentPass pass = run_pass(picture, patch, Interpolation::CUBIC, a);
+    a.noise_grey = pass.noise_grey;
+    a.visible = usable > 0 ? pass.weight / usable : 0;
+    a.correlation = weighted_correlation(patch, buffers_);
+  }
+
+  EsmOptions options_;
+  Camera camera_;
+  std::vector<Patch> patches_;
+  std::vector<double> usable_;
+  AlignmentBuffers buffers_;
+  double half_side_px_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<PatchAligner> make_esm_aligner(const EsmOptions& options) {
+  return std::make_unique<EsmAligner>(options);
+}
+
+}  // namespace heartservo::tracking

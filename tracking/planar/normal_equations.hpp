@@ -1,0 +1,37 @@
+#pragma once
+// Residual, robust weights and normal equations of the alignment at one pyramid level, in plain float loops.
+#include <Eigen/Core>
+#include <vector>
+
+#include "tracking/planar/patch.hpp"
+
+namespace heartservo::tracking {
+
+/// Eight parameters of SL(3), then gain and bias.
+using Matrix10d = Eigen::Matrix<double, 10, 10>;
+using Vector10d = Eigen::Matrix<double, 10, 1>;
+
+/// Buffers of one alignment, kept between frames. Sized for the largest level.
+struct AlignmentBuffers {
+  std::vector<float> grey, inside, residual, weight, sample;
+  void resize(std::size_t n);
+};
+
+/// What one pass over the template finds.
+struct AlignmentPass {
+  Matrix10d JtJ;
+  Vector10d Jtr;
+  double noise_grey = 0;  ///< 1.4826 * median |residual|
+  double points = 0;      ///< usable points inside the picture
+  double weight = 0;      ///< sum of their robust weights
+};
+
+/// residual = gain * buffers.grey + bias - template, on usable points; Tukey weights scaled by the median absolute
+/// deviation; J of the efficient second-order minimisation (Benhimane & Malis 2004): the mean of the picture's and
+/// the template's gradient.
+AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBuffers& buffers);
+
+/// Zero-mean normalised correlation of template and buffers.grey under buffers.weight (as the last pass left it).
+double weighted_correlation(const Patch& patch, const AlignmentBuffers& buffers);
+
+}  // namespace heartservo::tracking

@@ -1,0 +1,45 @@
+#pragma once
+// The template: the region's grey values on a regular grid, with the coordinates in which the alignment works.
+//
+// Patch coordinates (x, y): the grid's centre is (0, 0), one grid step is `step`, and the longer side spans [-1, 1],
+// which keeps the eight parameters of SL(3) equally scaled. A homography G_plane_patch takes patch coordinates to the
+// camera's normalised plane (undistorted); without a camera, to pixels.
+#include <Eigen/Core>
+#include <vector>
+
+#include "tracking/camera/camera.hpp"
+#include "tracking/planar/image_pyramid.hpp"
+
+namespace heartservo::tracking {
+
+/// One pyramid level of the template. Arrays are row by row, width * height.
+struct Patch {
+  int width = 0, height = 0;  ///< grid points
+  float step = 0;             ///< patch coordinate per grid step
+  std::vector<float> grey;
+  std::vector<float> gradient_x, gradient_y;  ///< per unit of patch coordinate
+  std::vector<float> usable;                  ///< 1, or 0 at the border and where the template is saturated
+
+  std::size_t size() const { return grey.size(); }
+  float x_of(int column) const { return (static_cast<float>(column) - 0.5F * static_cast<float>(width - 1)) * step; }
+  float y_of(int row) const { return (static_cast<float>(row) - 0.5F * static_cast<float>(height - 1)) * step; }
+};
+
+/// Grey values above this are glare or clipping and say nothing about the tissue.
+inline constexpr float kSaturatedGrey = 250;
+
+enum class Interpolation {
+  LINEAR,  ///< bilinear: fast, to come near
+  CUBIC,   ///< Catmull-Rom: exact enough for a hundredth of a pixel
+};
+
+/// Samples the pyramid's level where `G_plane_patch` sends the grid. `inside` is 1 where the sample lies in
+/// the window, else 0. Both have patch.size() elements.
+void warp(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, const Patch& patch,
+          Interpolation interpolation, float* grey, float* inside);
+
+/// A patch of width x height points at the given level, grey values from the picture under G_plane_patch.
+Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,
+                 int height);
+
+}  // namespace heartservo::tracking

@@ -1,0 +1,39 @@
+#pragma once
+// Aligns a template with a picture. A tracker (planar_tracker.hpp) wraps an aligner with prediction, states and
+// re-acquisition, so that every aligner gets the same loss detection.
+#include <Eigen/Core>
+#include <memory>
+
+#include "tracking/camera/camera.hpp"
+#include "tracking/planar/image_pyramid.hpp"
+#include "tracking/planar/patch.hpp"
+
+namespace heartservo::tracking {
+
+/// Where the template lies in a picture, and how well it fits there.
+struct Alignment {
+  bool converged = false;  ///< false: singular, out of the picture, or not finite
+  Eigen::Matrix3d G_plane_patch = Eigen::Matrix3d::Identity();
+  double gain = 1, bias = 0;  ///< template = gain * picture + bias
+  double correlation = 0;     ///< zero-mean normalised, over the points believed, -1..1
+  double visible = 0;         ///< share of the template's usable points that lie in the picture and fit (not occluded)
+  double noise_grey = 0;      ///< robust standard deviation of the remaining difference
+  int iterations = 0;
+};
+
+class PatchAligner {
+ public:
+  virtual ~PatchAligner() = default;
+
+  /// Learns the template from the picture; `side_x`, `side_y` are the region's sides in px.
+  virtual void learn(const ImagePyramid& picture, const Camera& camera, const Eigen::Matrix3d& G_plane_patch,
+                     int side_x, int side_y) = 0;
+
+  /// Starts from `start`; its position, gain and bias are used. Uses the pyramid levels from `coarsest` down to 0.
+  virtual Alignment align(const ImagePyramid& picture, const Alignment& start, int coarsest) = 0;
+
+  /// The template at a pyramid level.
+  virtual const Patch& patch(int level) const = 0;
+};
+
+}  // namespace heartservo::tracking

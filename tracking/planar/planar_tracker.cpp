@@ -1,0 +1,235 @@
+#include "tracking/planar/planar_tracker.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "tracking/frames/frame.hpp"
+#include "tracking/planar/sl3.hpp"
+#include "tracking/planar/template_search.hpp"
+
+namespace heartservo::tracking {
+
+namespace {
+
+constexpr double kSmallestSide = 12;       // px
+constexpr double kSmallestGradient = 1.5;  // grey/px, RMS in the direction with the least texture
+constexpr double kVisibleShare = 0.5;      // a template that fits on fewer points loses quality
+constexpr double kLargestGrowth = 1.6;     // of the area, between two frames
+constexpr double kLargestScale = 3;        // of the side, against the reference
+
+Eigen::Matrix3d intrinsics(const Camera& c) {
+  Eigen::Matrix3d K;
+  K << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1;
+  return K;
+}
+
+}  // namespace
+
+PlanarTracker::PlanarTracker(std::unique_ptr<PatchAligner> aligner, const Camera& camera, const TrackerOptions& options)
+    : aligner_(std::move(aligner)), camera_(camera), options_(options) {
+  if (!(camera_.fx > 0)) {
+    camera_ = Camera{};
+    camera_.fx = camera_.fy = 1;
+  }
+}
+
+std::string PlanarTracker::start(const Frame& frame, const Quad& corners) {
+  started_ = locked_ = false;
+  if (frame.status != FrameStatus::OK) return "the first frame is not readable: " + frame.note;
+  if (!is_convex(corners)) return "the region's corners are not four finite points clockwise from top left";
+  for (const auto& c : corners)
+    if (c.x() < 0 || c.y() < 0 || c.x() > frame.grey.cols - 1 || c.y() > frame.grey.rows - 1)
+      return fmt::format("the region's corner ({:.0f}, {:.0f}) lies outside the picture of {} x {} px", c.x(), c.y(),
+                         frame.grey.cols, frame.grey.rows);
+  const double side_x = 0.5 * ((corners[1] - corners[0]).norm() + (corners[2] - corners[3]).norm());
+  const double side_y = 0.5 * ((corners[3] - corners[0]).norm() + (corners[2] - corners[1]).norm());
+  if (std::min(side_x, side_y) < kSmallestSide)
+    return fmt::format("the region of {:.0f} x {:.0f} px is smaller than {} px", side_x, side_y, kSmallestSide);
+
+  width_ = frame.grey.cols;
+  height_ = frame.grey.rows;
+  side_px_ = std::max(side_x, side_y);
+  const double half_x = side_x / side_px_, half_y = side_y / side_px_;
+  patch_corners_ = rectangle(-half_x, -half_y, 2 * half_x, 2 * half_y);
+  Quad plane;
+  for (std::size_t i = 0; i < 4; ++i) plane[i] = camera_.normalise(corners[i]);
+  reference_ = Alignment{};
+  reference_.G_plane_patch = to_sl3(homography_between(patch_corners_, plane));
+  if (!reference_.G_plane_patch.allFinite()) return "the region's corners cannot be undistorted by this camera";
+  build_pyramid(frame.grey, corners, corners, 16);
+  aligner_->learn(pyramid_, camera_, reference_.G_plane_patch, static_cast<int>(std::lround(side_x)),
+                  static_cast<int>(std::lround(side_y)));
+  if (std::string why = unfit_texture(); !why.empty()) return why;
+  last_ = reference_;
+  last_time_s_ = frame.time_s;
+  plane_velocity_.setZero();
+  started_ = locked_ = true;
+  return "";
+}
+
+std::string PlanarTracker::unfit_texture() const {
+  const Patch& patch = aligner_->patch(0);
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  double n = 0;
+  for (std::size_t i = 0; i < patch.size(); ++i) {
+    const Eigen::Vector2d g(patch.gradient_x[i], patch.gradient_y[i]);
+    sum += static_cast<double>(patch.usable[i]) * g * g.transpose();
+    n += static_cast<double>(patch.usable[i]);
+  }
+  if (n < 0.3 * static_cast<double>(patch.size())) return "the region is mostly saturated or outside the picture";
+  const double step = static_cast<double>(patch.step);
+  const Eigen::Vector2d eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(sum / n).eigenvalues() * step * step;
+  const double weakest = std::sqrt(std::max(0.0, eigenvalues[0]));
+  if (weakest < kSmallestGradient)
+    return fmt::format(
+        "the region has too little texture: RMS gradient {:.2f} grey/px in its weakest direction, {} needed, "
+        "condition number {:.0f}",
+        weakest, kSmallestGradient, eigenvalues[1] / std::max(eigenvalues[0], 1e-12));
+  return "";
+}
+
+Quad PlanarTracker::corners_of(const Eigen::Matrix3d& G) const {
+  Quad corners = transform(G, patch_corners_);
+  for (auto& c : corners) c = camera_.to_pixel(camera_.distort(c));
+  return corners;
+}
+
+Eigen::Matrix3d PlanarTracker::shifted(const Eigen::Matrix3d& G, const Eigen::Vector2d& plane_shift) const {
+  Eigen::Matrix3d move = Eigen::Matrix3d::Identity();
+  move.topRightCorner<2, 1>() = plane_shift;
+  return move * G;
+}
+
+// 0 unless the alignment is plausible as a view of the same region.
+double PlanarTracker::quality_of(const Alignment& a, const Quad& expected) const {
+  if (!a.converged || !(a.correlation > 0)) return 0;
+  const Quad corners = corners_of(a.G_plane_patch);
+  if (!is_convex(corners)) return 0;
+  const double growth = area(corners) / area(expected), total = std::sqrt(area(corners)) / side_px_;
+  if (growth > kLargestGrowth || growth < 1 / kLargestGrowth || total > kLargestScale || total < 1 / kLargestScale)
+    return 0;
+  const Eigen::Vector2d c = centre(corners);
+  if (c.x() < 0 || c.y() < 0 || c.x() > width_ - 1 || c.y() > height_ - 1) return 0;
+  return a.correlation * std::min(1.0, a.visible / kVisibleShare);
+}
+
+PlanarTracker::Candidate PlanarTracker::try_from(const Alignment& start, int coarsest, const Quad& expected) {
+  Candidate c;
+  c.alignment = aligner_->align(pyramid_, start, coarsest);
+  c.quality = quality_of(c.alignment, expected);
+  return c;
+}
+
+PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
+  const Quad last = corners_of(last_.G_plane_patch);
+  Alignment predicted = last_;
+  predicted.G_plane_patch = shifted(last_.G_plane_patch, plane_velocity_ * (frame.time_s - last_time_s_));
+  build_pyramid(frame.grey, last, corners_of(predicted.G_plane_patch), 0.35 * side_px_);
+  const int coarsest = pyramid_.levels() - 1;
+  Candidate best = try_from(predicted, coarsest, last);
+  if (best.quality < options_.ok_quality)
+    if (Candidate still = try_from(last_, coarsest, last); still.quality > best.quality) best = still;
+  if (best.quality < options_.ok_quality) {
+    build_pyramid(frame.grey, last, last, options_.search_px + 0.35 * side_px_);
+    if (Candidate found = search(last, options_.search_px, 3); found.quality > best.quality) best = found;
+  }
+  return best;
+}
+
+PlanarTracker::Candidate PlanarTracker::reacquire(const cv::Mat& grey) {
+  pyramid_.build(grey, cv::Rect(0, 0, grey.cols, grey.rows), options_.levels);
+  return search(corners_of(last_.G_plane_patch), std::hypot(grey.cols, grey.rows), 6);
+}
+
+// Correlates the template, as the last believed alignment shows it, with a coarse level of the pyramid and aligns from
+// the best places.
+PlanarTracker::Candidate PlanarTracker::search(const Quad& around, double radius_px, int candidates) {
+  Candidate best;
+  const int level = search_level(side_px_, pyramid_.levels());
+  for (const Alignment* view : {&last_, &reference_}) {
+    const Quad corners = corners_of(view->G_plane_patch);
+    const auto places =
+        find_template(aligner_->patch(level), corners, pyramid_.level(level), centre(around), radius_px, candidates);
+    for (const auto& place : places) {
+      Alignment start = *view;
+      const Eigen::Vector2d from = camera_.normalise(centre(corners)), to = camera_.normalise(place);
+      if (!from.allFinite() || !to.allFinite()) continue;
+      start.G_plane_patch = shifted(view->G_plane_patch, to - from);
+      start.gain = last_.gain;
+      start.bias = last_.bias;
+      const Candidate c = try_from(start, level, corners);
+      if (c.quality > best.quality) best = c;
+    }
+  }
+  return best;
+}
+
+void PlanarTracker::build_pyramid(const cv::Mat& grey, const Quad& a, const Quad& b, double margin_px) {
+  double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
+  for (const Quad* quad : {&a, &b})
+    for (const auto& c : *quad) {
+      if (!c.allFinite()) continue;
+      left = std::min(left, c.x()), right = std::max(right, c.x());
+      top = std::min(top, c.y()), bottom = std::max(bottom, c.y());
+    }
+  // Four pixels of the coarsest level keep the smoothing of the pyramid away from the window's border.
+  const double margin = margin_px + 4.0 * (1 << (options_.levels - 1));
+  const auto clip = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
+  const cv::Point from(clip(left - margin), clip(top - margin)),
+      to(clip(right + margin + 1), clip(bottom + margin + 1));
+  pyramid_.build(grey, cv::Rect(from, to), options_.levels);
+}
+
+void PlanarTracker::believe(const Candidate& candidate, double time_s) {
+  const auto centre_of = [&](const Alignment& a) {
+    return Eigen::Vector2d((a.G_plane_patch * Eigen::Vector3d::UnitZ()).hnormalized());
+  };
+  const double dt = time_s - last_time_s_;
+  if (locked_ && dt > 0)
+    plane_velocity_ = (centre_of(candidate.alignment) - centre_of(last_)) / dt;
+  else
+    plane_velocity_.setZero();
+  last_ = candidate.alignment;
+  last_time_s_ = time_s;
+  locked_ = true;
+}
+
+Track PlanarTracker::track(const Frame& frame) {
+  Track track;
+  track.time_s = frame.time_s;
+  track.sequence = frame.sequence;
+  if (!started_) return track;
+  const bool readable = frame.status == FrameStatus::OK && frame.grey.cols == width_ && frame.grey.rows == height_;
+  if (readable) {
+    const bool was_locked = locked_;
+    Candidate found;
+    if (locked_) found = follow(frame);
+    if (!(found.quality >= options_.uncertain_quality)) {
+      found = reacquire(frame.grey);
+      if (!(found.quality >= options_.ok_quality)) {
+        found.quality = 0;
+        locked_ = false;
+      }
+    }
+    if (found.quality >= options_.uncertain_quality) {
+      track.reacquired = !was_locked;
+      believe(found, frame.time_s);
+      track.state = found.quality >= options_.ok_quality ? TrackState::OK : TrackState::UNCERTAIN;
+      track.quality = std::min(1.0, found.quality);
+      track.iterations = found.alignment.iterations;
+      track.noise_grey = found.alignment.noise_grey;
+    }
+  }
+  const Eigen::Matrix3d K = intrinsics(camera_);
+  track.corners = corners_of(last_.G_plane_patch);
+  track.gain = last_.gain;
+  track.bias = last_.bias;
+  track.H_current_reference = to_sl3(K * last_.G_plane_patch * reference_.G_plane_patch.inverse() * K.inverse());
+  return track;
+}
+
+}  // namespace heartservo::tracking

@@ -1,0 +1,72 @@
+#pragma once
+// Around any aligner: image-space prediction, start values from several guesses, the states OK / UNCERTAIN / LOST, and
+// re-acquisition by a search over the whole picture.
+#include <Eigen/Core>
+#include <memory>
+
+#include "tracking/camera/camera.hpp"
+#include "tracking/planar/patch_aligner.hpp"
+#include "tracking/planar/target_tracker.hpp"
+#include "tracking/settings/fields.hpp"
+
+namespace heartservo::tracking {
+
+struct TrackerOptions {
+  int levels = 3;                  ///< pyramid levels at most; small regions use fewer
+  int max_iterations = 15;         ///< per level
+  double ok_quality = 0.75;        ///< at least this: OK (and needed to be found again)
+  double uncertain_quality = 0.5;  ///< at least this: UNCERTAIN; below: LOST
+  double search_px = 24;           ///< how far from the expected place to search before giving the region up
+
+  void fields(FieldVisitor& v) {
+    v.field({"levels", "", "pyramid levels at most; small regions use fewer", 1, 6}, levels);
+    v.field({"max_iterations", "", "iterations of the alignment per pyramid level", 1, 100}, max_iterations);
+    v.field({"ok_quality", "", "quality from which a track is OK, and which is needed to be found again", 0, 1},
+            ok_quality);
+    v.field({"uncertain_quality", "", "quality below which a track is LOST", 0, 1}, uncertain_quality);
+    v.field({"search_px", "px", "how far around the expected place to search before giving the region up", 0, 500},
+            search_px);
+  }
+};
+
+class PlanarTracker final : public TargetTracker {
+ public:
+  /// With a calibrated camera the homography lives on the undistorted plane, where it is exact; `camera` without
+  /// focal length means: no calibration, straight on the pixels.
+  PlanarTracker(std::unique_ptr<PatchAligner> aligner, const Camera& camera, const TrackerOptions& options);
+
+  std::string start(const Frame& frame, const Quad& corners) override;
+  Track track(const Frame& frame) override;
+
+ private:
+  struct Candidate {
+    Alignment alignment;
+    double quality = 0;
+  };
+
+  std::string unfit_texture() const;
+  Quad corners_of(const Eigen::Matrix3d& G_plane_patch) const;
+  Eigen::Matrix3d shifted(const Eigen::Matrix3d& G_plane_patch, const Eigen::Vector2d& plane_shift) const;
+  double quality_of(const Alignment& alignment, const Quad& expected) const;
+  Candidate try_from(const Alignment& start, int coarsest, const Quad& expected);
+  Candidate follow(const Frame& frame);
+  Candidate search(const Quad& around, double radius_px, int candidates);
+  Candidate reacquire(const cv::Mat& grey);
+  void build_pyramid(const cv::Mat& grey, const Quad& a, const Quad& b, double margin_px);
+  void believe(const Candidate& candidate, double time_s);
+
+  std::unique_ptr<PatchAligner> aligner_;
+  Camera camera_;
+  TrackerOptions options_;
+  ImagePyramid pyramid_;
+  Quad patch_corners_{};  // in patch coordinates
+  Alignment reference_;   // where the template was learnt
+  Alignment last_;        // last believed
+  double last_time_s_ = 0;
+  Eigen::Vector2d plane_velocity_ = Eigen::Vector2d::Zero();  // of the centre, plane units per s
+  bool started_ = false, locked_ = false;
+  int width_ = 0, height_ = 0;
+  double side_px_ = 0;
+};
+
+}  // namespace heartservo::tracking
