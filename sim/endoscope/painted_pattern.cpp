@@ -1,0 +1,47 @@
+#include "sim/endoscope/painted_pattern.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace heartservo::sim {
+namespace {
+
+/// Pseudorandom in [-1, 1] from integers.
+double cell(std::uint32_t id, int i, int j) {
+  std::uint32_t h =
+      id * 0x9e3779b9u + static_cast<std::uint32_t>(i) * 0x85ebca6bu + static_cast<std::uint32_t>(j) * 0xc2b2ae35u;
+  h ^= h >> 16, h *= 0x7feb352du, h ^= h >> 15, h *= 0x846ca68bu, h ^= h >> 16;
+  return h / 2147483647.5 - 1;
+}
+
+double smooth(double f) { return f * f * (3 - 2 * f); }
+
+/// Value noise: random values on the integer grid, smoothly joined.
+double noise(std::uint32_t id, double x, double y) {
+  const double fx = std::floor(x), fy = std::floor(y);
+  const int i = static_cast<int>(fx), j = static_cast<int>(fy);
+  const double u = smooth(x - fx), v = smooth(y - fy);
+  const double top = cell(id, i, j) + u * (cell(id, i + 1, j) - cell(id, i, j));
+  const double bottom = cell(id, i, j + 1) + u * (cell(id, i + 1, j + 1) - cell(id, i, j + 1));
+  return top + v * (bottom - top);
+}
+
+/// `cells` cells across the plate, turned by `angle`.
+double turned(std::uint32_t id, double x, double y, double cells, double angle) {
+  const double c = std::cos(angle) * cells / 2, s = std::sin(angle) * cells / 2;
+  return noise(id, c * x - s * y + 17.37, s * x + c * y + 31.61);
+}
+
+}  // namespace
+
+double painted_pattern(std::uint32_t id, double x, double y) {
+  const double rim = std::max(std::abs(x), std::abs(y));
+  if (rim > 0.92) return 215;
+  const double value = 0.95 * turned(3 * id + 1, x, y, 3.3, 0.41) + 0.75 * turned(3 * id + 2, x, y, 7.9, 1.13) +
+                       0.45 * turned(3 * id + 3, x, y, 14.7, 2.02);
+  // Three paints: dark, middle, light, a third of the fully pressed levels mixed with the continuous value.
+  const double pressed = std::tanh(7 * (value - 0.28)) + std::tanh(7 * (value + 0.28));
+  return std::clamp(118 + 38 * pressed + 45 * value, 12.0, 238.0);
+}
+
+}  // namespace heartservo::sim

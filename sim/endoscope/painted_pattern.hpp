@@ -1,0 +1,16 @@
+#pragma once
+// The grey pattern painted on landmarks and on the tool's marker.
+#include <cstdint>
+
+namespace heartservo::sim {
+
+/// Grey level (0..255) of pattern `id` at (x, y) in [-1, 1]^2 (x right, y down), the plate's outline being |x|, |y|
+/// = 1.
+///
+/// A sum of smooth random cells of three sizes (a third, an eighth and a fifteenth of the side), each grid turned and
+/// shifted by its own irrational amounts so that nothing repeats or is symmetric; pressed towards three paint levels
+/// with soft edges; within a light rim. Gradients are strong in both directions at every scale from the plate to a few
+/// pixels, and different ids look different.
+double painted_pattern(std::uint32_t id, double x, double y);
+
+}  // namespace heartservo::sim

@@ -1,0 +1,84 @@
+#pragma once
+// Motion of one spot of a beating heart: displacement and tilt as functions of time, known in closed form.
+#include <Eigen/Core>
+#include <array>
+#include <complex>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/heart/beats.hpp"
+#include "sim/heart/heart_profile.hpp"
+#include "tracking/settings/fields.hpp"
+
+namespace heartservo::sim {
+
+struct HeartMotionOptions {
+  std::string profile = "sharp";
+  double heart_rate_hz = profile::kHeartRate_hz;
+  double respiration_rate_hz = profile::kRespiration_hz;
+  double amplitude_scale = 1;
+  double rotation_rad = 0.04;
+  double beat_variability = 0.02;
+  double beat_correlation = 0.3;
+  double respiration_variability = 0.005;
+  double breathing_modulation = 0.1;
+
+  void fields(FieldVisitor& v) {
+    v.choice({"profile", "", "lines of motion: the six of Table 3, those and sharp harmonics (Table 4), or none"},
+             profile, {"six_line", "sharp", "still"});
+    v.field({"heart_rate_hz", "Hz", "mean heart rate", 0.3, 2}, heart_rate_hz);
+    v.field({"respiration_rate_hz", "Hz", "mean respiration rate", 0.05, 1}, respiration_rate_hz);
+    v.field({"amplitude_scale", "", "1 is the paper's heart: 11 mm peak to peak along z", 0, 3}, amplitude_scale);
+    v.field({"rotation_rad", "rad", "largest tilt about each axis", 0, 0.2}, rotation_rad);
+    v.field({"beat_variability", "", "standard deviation of the beat period, relative", 0, 0.3}, beat_variability);
+    v.field({"beat_correlation", "", "correlation of successive beat periods", -0.95, 0.95}, beat_correlation);
+    v.field({"respiration_variability", "", "standard deviation of the respiration period, relative", 0, 0.3},
+            respiration_variability);
+    v.field({"breathing_modulation", "", "by how much breathing changes the beat's amplitude", 0, 0.5},
+            breathing_modulation);
+  }
+
+  /// Every problem at once, empty when usable.
+  std::vector<std::string> validate() const;
+};
+
+/// Deterministic in (options, seed, duration); const methods may be called from any thread. Beyond the duration the
+/// motion goes on, at constant rates.
+class HeartMotion {
+ public:
+  /// Throws ConfigError on options that do not validate.
+  HeartMotion(const HeartMotionOptions& options, std::uint64_t seed, double duration_s);
+
+  /// Beats at given R peaks (s), for example from a recorded ECG, instead of drawn ones.
+  HeartMotion(const HeartMotionOptions& options, std::uint64_t seed, double duration_s, std::vector<double> r_peaks_s);
+
+  /// Camera frame, m, about zero in the mean.
+  Eigen::Vector3d displacement(double t) const;
+
+  /// Tilt about the spot, a rotation in the camera frame.
+  Eigen::Matrix3d rotation(double t) const;
+
+  double respiration_phase(double t) const { return respiration_.phase(t); }  ///< [0, 1)
+  double cardiac_phase(double t) const { return heart_.phase(t); }            ///< [0, 1), 0 at the R peak
+
+  /// Strength of the beat at t: about 1, modulated by breathing; 0 for a heart that stands still.
+  double beat_strength(double t) const;
+
+  /// Times of the R peaks, s, increasing.
+  const std::vector<double>& beats() const { return heart_.marks(); }
+
+ private:
+  using Line = std::complex<double>;  // amplitude and phase: Re(line e^{i angle})
+
+  double strength(const std::complex<double>& breath) const;
+
+  HeartMotionOptions options_;
+  PhaseClock heart_;
+  PhaseClock respiration_;
+  std::array<std::array<Line, 2>, 3> respiration_lines_;
+  std::array<std::array<Line, profile::kCardiacLines>, 3> heart_lines_;
+  int harmonics_ = 0;
+};
+
+}  // namespace heartservo::sim
