@@ -1,7 +1,7 @@
 #pragma once
-// A struct of options lists its fields once, in `void fields(FieldVisitor&)`. Reading from YAML (yaml_reader.hpp), writing
-// the resolved configuration (yaml_writer.hpp), the key-by-key documentation and the JSON schema (document.hpp) all
-// come from that one list, so they cannot disagree.
+// A struct of options lists its fields once, in `void fields(FieldVisitor&)`. Reading from YAML (yaml_reader.hpp),
+// writing the resolved configuration (yaml_writer.hpp), the key-by-key documentation and the JSON schema (document.hpp)
+// all come from that one list, so they cannot disagree.
 #include <Eigen/Core>
 #include <limits>
 #include <string>
@@ -48,16 +48,19 @@ class FieldVisitor {
   /// A list of structs; reading resizes it.
   template <class Options>
   void list(const char* name, const char* doc, std::vector<Options>& items) {
+    if (describes_types()) {  // documentation and schema want to see one item, with its defaults
+      begin_list(name, doc, 1);
+      Options example;
+      begin_item(0);
+      example.fields(*this);
+      end_item();
+      end_list();
+      return;
+    }
     items.resize(begin_list(name, doc, items.size()));
     for (std::size_t i = 0; i < items.size(); ++i) {
       begin_item(i);
       items[i].fields(*this);
-      end_item();
-    }
-    if (describes_types() && items.empty()) {  // documentation and schema want to see one item
-      Options example;
-      begin_item(0);
-      example.fields(*this);
       end_item();
     }
     end_list();
