@@ -82,7 +82,7 @@ std::string image(const ReportPicture& picture) {
     cv::resize(picture.bgr, shown, {}, scale, scale, cv::INTER_AREA);
   }
   std::vector<unsigned char> png;
-  cv::imencode(".png", shown, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  cv::imencode(".png", shown, png, {cv::IMWRITE_PNG_COMPRESSION, 6});
   return fmt::format(
       "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
       "<figcaption>{}</figcaption></figure>\n",
@@ -94,12 +94,12 @@ std::string table(const ReportTable& table) {
       fmt::format("<div{}><h2>{}</h2>\n", table.header.size() > 3 ? " class=\"wide\"" : "", escaped(table.title));
   if (!table.note.empty()) html += fmt::format("<p class=\"note\">{}</p>\n", escaped(table.note));
   html += "<div class=\"scroll\"><table>\n";
-  // a column is numeric when all its cells look like numbers
+  // in a comparison a column is numeric when all its cells look like numbers
   std::vector<bool> numeric;
   for (const auto& row : table.rows)
     for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i >= numeric.size()) numeric.push_back(i > 0);
-      if (!table.header.empty() && !looks_like_number(row[i])) numeric[i] = false;
+      if (i >= numeric.size()) numeric.push_back(i > 0 && !table.header.empty());
+      if (!looks_like_number(row[i])) numeric[i] = false;
     }
   const auto align = [&](std::size_t i) { return i < numeric.size() && numeric[i] ? " class=\"n\"" : ""; };
   if (!table.header.empty()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -26,7 +27,7 @@ class MarkdownWriter final : public FieldVisitor {
   MarkdownWriter() { open(""); }
 
   void field(const FieldInfo& info, double& value) override {
-    row(info, "number", fmt::format("{}", value), range_of(info));
+    row(info, "number", std::isfinite(value) ? fmt::format("{}", value) : "", range_of(info));
   }
   void field(const FieldInfo& info, int& value) override {
     row(info, "whole number", fmt::format("{}", value), range_of(info));
@@ -60,7 +61,7 @@ class MarkdownWriter final : public FieldVisitor {
   void end_group() override { open_.pop_back(); }
   std::size_t begin_list(const char* name, const char* doc, std::size_t) override {
     open(join(name) + "[]", doc);
-    return 0;  // one item with the defaults of its struct says all
+    return 1;
   }
   void begin_item(std::size_t) override {}
   void end_item() override {}
@@ -88,7 +89,7 @@ class MarkdownWriter final : public FieldVisitor {
 
   void row(const FieldInfo& info, const std::string& type, const std::string& value, const std::string& range) {
     current().rows += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", join(info.name), type, cell(info.unit),
-                                  value.empty() ? "" : "`" + cell(value) + "`", cell(range), cell(info.doc));
+                                  value.empty() ? "" : fmt::format("`{}`", cell(value)), cell(range), cell(info.doc));
   }
 
   std::vector<Group> groups_;      // in the order of appearance
@@ -106,7 +107,7 @@ class SchemaWriter final : public FieldVisitor {
   void field(const FieldInfo& info, double& value) override {
     Json schema{{"type", "number"}};
     limit(schema, info);
-    schema["default"] = value;
+    if (std::isfinite(value)) schema["default"] = value;  // NaN stands for "not given"
     add(info, std::move(schema));
   }
   void field(const FieldInfo& info, int& value) override {
@@ -144,7 +145,7 @@ class SchemaWriter final : public FieldVisitor {
   }
   std::size_t begin_list(const char* name, const char* doc, std::size_t) override {
     open(name, doc);
-    return 0;
+    return 1;
   }
   void begin_item(std::size_t) override {}
   void end_item() override {}

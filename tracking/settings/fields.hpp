@@ -48,16 +48,19 @@ class FieldVisitor {
   /// A list of structs; reading resizes it.
   template <class Options>
   void list(const char* name, const char* doc, std::vector<Options>& items) {
+    if (describes_types()) {  // documentation and schema want to see one item, with its defaults
+      begin_list(name, doc, 1);
+      Options example;
+      begin_item(0);
+      example.fields(*this);
+      end_item();
+      end_list();
+      return;
+    }
     items.resize(begin_list(name, doc, items.size()));
     for (std::size_t i = 0; i < items.size(); ++i) {
       begin_item(i);
       items[i].fields(*this);
-      end_item();
-    }
-    if (describes_types() && items.empty()) {  // documentation and schema want to see one item
-      Options example;
-      begin_item(0);
-      example.fields(*this);
       end_item();
     }
     end_list();

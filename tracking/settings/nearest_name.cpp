@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 
 #include "tracking/settings/yaml_reader.hpp"
@@ -6,6 +7,11 @@
 namespace heartservo {
 
 namespace {
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 // Levenshtein distance.
 int edit_distance(const std::string& a, const std::string& b) {
@@ -27,11 +33,13 @@ int edit_distance(const std::string& a, const std::string& b) {
 
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
   std::string best;
-  int best_distance = std::max(2, static_cast<int>(word.size()) / 3) + 1;
+  const std::string typed = lower(word);
+  // two letters of three would suggest anything
+  int best_distance = (word.size() <= 3 ? 1 : std::max(2, static_cast<int>(word.size()) / 3)) + 1;
   for (const auto& name : names) {
-    const bool prefix = word.size() >= 3 && name.compare(0, word.size(), word) == 0;
-    const int distance = prefix ? 1 : edit_distance(word, name);
-    if (distance < best_distance) {
+    const bool prefix = word.size() >= 3 && lower(name).compare(0, typed.size(), typed) == 0;
+    const int distance = prefix ? 1 : edit_distance(typed, lower(name));
+    if (distance < best_distance && distance < static_cast<int>(std::max(typed.size(), name.size()))) {
       best_distance = distance;
       best = name;
     }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -18,6 +19,7 @@ namespace {
 class YamlReader final : public FieldVisitor {
  public:
   YamlReader(const YAML::Node& root, std::string where, std::string path) : where_(std::move(where)) {
+    if (root.IsDefined() && !root.IsNull() && !root.IsMap()) fail_at(root.Mark().line, path, "must be a group of keys");
     open(root, std::move(path));
   }
 
@@ -78,9 +80,10 @@ class YamlReader final : public FieldVisitor {
   }
   void begin_item(std::size_t index) override {
     const Level& list = levels_.back();
+    const std::string path = fmt::format("{}[{}]", list.path, index);
     const YAML::Node node = list.node.IsSequence() ? list.node[index] : YAML::Node(YAML::NodeType::Undefined);
-    if (node.IsDefined() && !node.IsMap()) fail(node, fmt::format("[{}]", index).c_str(), "must be a group of keys");
-    open(node, fmt::format("{}[{}]", list.path, index));
+    if (node.IsDefined() && !node.IsMap()) fail_at(node.Mark().line, path, "must be a group of keys");
+    open(node, path);
   }
   void end_item() override { close(); }
   void end_list() override { levels_.pop_back(); }
@@ -116,7 +119,7 @@ class YamlReader final : public FieldVisitor {
   }
   [[noreturn]] void fail_at(int line, const std::string& key, const std::string& what) const {
     const std::string at = line >= 0 ? fmt::format(":{}", line + 1) : "";
-    throw ConfigError(fmt::format("{}{}: {}: {}", where_, at, key, what));
+    throw ConfigError(fmt::format("{}{}: {}{}{}", where_, at, key, key.empty() ? "" : ": ", what));
   }
 
   double number(const YAML::Node& node, const FieldInfo& info) const {
@@ -127,18 +130,24 @@ class YamlReader final : public FieldVisitor {
       const std::string range = std::isinf(info.max)   ? fmt::format("at least {}", info.min)
                                 : std::isinf(info.min) ? fmt::format("at most {}", info.max)
                                                        : fmt::format("from {} to {}", info.min, info.max);
-      fail(node, info.name, fmt::format("{} is out of range; must be {} {}", v, range, info.unit));
+      fail(node, info.name,
+           fmt::format("{} is out of range; must be {}{}{}", v, range, *info.unit ? " " : "", info.unit));
     }
     return v;
   }
 
   void check_unknown(const Level& level) const {
     if (!level.node.IsMap()) return;
+    std::vector<std::string> seen;
     for (const auto& entry : level.node) {
       const std::string key = entry.first.Scalar();
+      const std::string path = level.path.empty() ? key : level.path + "." + key;
       if (std::find(level.known.begin(), level.known.end(), key) == level.known.end())
-        fail_at(entry.first.Mark().line, level.path.empty() ? key : level.path + "." + key,
-                "unknown key" + did_you_mean(key, level.known));
+        fail_at(entry.first.Mark().line, path, "unknown key" + did_you_mean(key, level.known));
+      // yaml-cpp would take the first and drop the second without a word
+      if (std::find(seen.begin(), seen.end(), key) != seen.end())
+        fail_at(entry.first.Mark().line, path, "is given twice; keep one");
+      seen.push_back(key);
     }
   }
 

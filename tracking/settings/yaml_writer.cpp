@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tracking/settings/fields.hpp"
 
 namespace heartservo {
@@ -14,7 +17,13 @@ class YamlWriter final : public FieldVisitor {
   YamlWriter() { out_ << YAML::BeginMap; }
 
   // fmt's shortest round-trip form; yaml-cpp's own would print 0.1 as 0.10000000000000001
-  void field(const FieldInfo& info, double& value) override { key(info.name) << fmt::format("{}", value); }
+  // NaN or infinity stand for "not given", which null says: the reader then keeps the default.
+  void field(const FieldInfo& info, double& value) override {
+    if (std::isfinite(value))
+      key(info.name) << fmt::format("{}", value);
+    else
+      key(info.name) << YAML::Null;
+  }
   void field(const FieldInfo& info, int& value) override { key(info.name) << value; }
   void field(const FieldInfo& info, bool& value) override { key(info.name) << value; }
   void field(const FieldInfo& info, std::string& value) override { key(info.name) << YAML::DoubleQuoted << value; }
@@ -23,8 +32,12 @@ class YamlWriter final : public FieldVisitor {
     for (const double v : value) out_ << fmt::format("{}", v);
     out_ << YAML::EndSeq;
   }
-  void choice(const FieldInfo& info, std::string& value, const std::vector<std::string>&) override {
-    key(info.name) << value;
+  void choice(const FieldInfo& info, std::string& value, const std::vector<std::string>& names) override {
+    // so does a choice that nobody made: "" is no name that the reader would take
+    if (value.empty() && std::find(names.begin(), names.end(), value) == names.end())
+      key(info.name) << YAML::Null;
+    else
+      key(info.name) << value;
   }
 
   std::string finish() {

@@ -1,0 +1,101 @@
+#include "sim/scene/scene.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "tracking/camera/camera_file.hpp"
+#include "tracking/landmark/registry.hpp"
+#include "tracking/planar/registry.hpp"
+#include "tracking/settings/errors.hpp"
+#include "tracking/settings/yaml_reader.hpp"
+
+namespace heartservo::sim {
+
+void EngineOptions::fields(FieldVisitor& v) {
+  v.choice({"tracker", "", "follows the region and the tool's marker"}, tracker, tracking::trackers().names());
+  v.choice({"estimator", "", "pixels to metres"}, estimator, tracking::estimators().names());
+  v.choice({"predictor", "", "foresees the goal"}, predictor, servo::predictors().names());
+  v.choice({"controller", "", "control law"}, controller, servo::control_laws().names());
+}
+
+void Scene::fields(FieldVisitor& v) {
+  v.field({"title", "", "one line for people"}, title);
+  v.field({"seed", "", "of every random draw: the same seed gives the same numbers", 0, 2e9}, seed);
+  v.field({"duration_s", "s", "of the run", 0.05, 1e5}, duration_s);
+  v.field({"settle_s", "s", "frames before this are not scored", 0, 1e4}, settle_s);
+  v.group("camera", "the endoscope's camera", camera);
+  v.group("recording", "frames from disk instead of the simulated heart", recording);
+  v.group("motion", "how the simulated heart moves", motion);
+  v.group("surface", "shape, deformation and landmarks of the simulated heart", surface);
+  v.group("target", "what the loop follows on the simulated heart", target);
+  v.group("picture", "light, lens, sensor and texture of the simulated picture", picture);
+  v.group("tool", "the tool as it looks in the picture", tool);
+  v.group("robot", "the robot that carries the tool", robot);
+  v.group("engines", "stages of the loop, by name", engines);
+  v.group("tracking", "options of the trackers", tracking);
+  v.group("loop", "latency, surgeon's offset, options of the stages", loop);
+}
+
+std::size_t Scene::frame_count() const {
+  return static_cast<std::size_t>(std::lround(duration_s * camera.frame_rate_hz));
+}
+
+std::vector<std::string> Scene::validate() const {
+  std::vector<std::string> problems;
+  const auto add = [&](const std::vector<std::string>& more) {
+    problems.insert(problems.end(), more.begin(), more.end());
+  };
+  if (settle_s >= duration_s && !is_recorded())
+    problems.push_back(fmt::format("settle_s ({} s) leaves nothing of duration_s ({} s) to score", settle_s, duration_s));
+  if (frame_count() < 2 && !is_recorded()) problems.emplace_back("duration_s is shorter than two frames");
+  if (target.landmark >= static_cast<int>(surface.landmarks.size()) && !is_recorded())
+    problems.push_back(fmt::format("target.landmark is {} but surface.landmarks has {} entries", target.landmark,
+                                   surface.landmarks.size()));
+  if (!recording.roi.empty() && recording.roi.size() != 4)
+    problems.emplace_back("recording.roi must be x, y, width, height");
+  if (tracking.uncertain_quality > tracking.ok_quality)
+    problems.emplace_back("tracking.uncertain_quality is above tracking.ok_quality");
+  if (!(loop.latency.total_s() < 2)) problems.emplace_back("loop.latency adds up to 2 s or more");
+  add(motion.validate());
+  add(surface.validate());
+  add(picture.validate());
+  add(tool.validate());
+  add(loop.validate());
+  return problems;
+}
+
+void require_valid(const Scene& scene, const std::string& where) {
+  const auto problems = scene.validate();
+  if (!problems.empty()) throw ConfigError(fmt::format("{}: {}", where, fmt::join(problems, "; ")));
+}
+
+Scene load_scene(const std::string& file) {
+  Scene scene;
+  read_fields(load_yaml(file), file, scene);
+  const auto folder = std::filesystem::path(file).parent_path();
+  scene.folder = folder.empty() ? "." : folder.string();
+  require_valid(scene, file);
+  return scene;
+}
+
+std::string resolve(const Scene& scene, const std::string& path) {
+  const std::filesystem::path p(path);
+  return p.is_absolute() ? path : (std::filesystem::path(scene.folder) / p).lexically_normal().string();
+}
+
+tracking::Camera camera_of(const Scene& scene, int width, int height) {
+  if (!scene.camera.calibration.empty()) {
+    const auto camera = tracking::read_camera(resolve(scene, scene.camera.calibration));
+    if (width > 0 && (camera.width != width || camera.height != height))
+      throw ConfigError(fmt::format("{}: made for {} x {} px, but the pictures have {} x {}", scene.camera.calibration,
+                                    camera.width, camera.height, width, height));
+    return camera;
+  }
+  return tracking::Camera::pinhole(width > 0 ? width : 512, height > 0 ? height : 512, scene.camera.field_of_view_rad);
+}
+
+}  // namespace heartservo::sim

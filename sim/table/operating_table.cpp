@@ -1,0 +1,132 @@
+// The simulated operating table: heart, endoscope, robot and clock.
+#include <cmath>
+#include <random>
+
+#include "servo/loop/loop_record.hpp"
+#include "sim/endoscope/endoscope.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/table/table.hpp"
+
+namespace heartservo::sim {
+
+namespace {
+
+// Each consumer of randomness has its own stream of the scene's seed.
+enum class Stream : std::uint64_t { MOTION = 1, SURFACE, PICTURE, ROBOT, HAND };
+std::uint64_t stream_seed(int seed, Stream stream) {
+  return static_cast<std::uint64_t>(seed) * 1000003ULL + static_cast<std::uint64_t>(stream);
+}
+
+class OperatingTable final : public Table, private tracking::FrameSource {
+ public:
+  explicit OperatingTable(const Scene& scene)
+      : scene_(scene),
+        camera_(camera_of(scene, 0, 0)),
+        endoscope_(camera_,
+                   HeartSurface(scene.surface,
+                                HeartMotion(scene.motion, stream_seed(scene.seed, Stream::MOTION), scene.duration_s + 1),
+                                stream_seed(scene.seed, Stream::SURFACE)),
+                   scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
+        robot_(scene.robot, goal_at(0) + scene.robot.start_error_m, stream_seed(scene.seed, Stream::ROBOT)) {}
+
+  tracking::FrameSource& frames() override { return *this; }
+  servo::ToolRobot& robot() override { return robot_; }
+  const tracking::Camera& camera() const override { return camera_; }
+  Eigen::Vector3d marker_to_tip() const override { return -scene_.tool.marker_offset_m; }
+  Eigen::Vector3d offset() const override { return scene_.loop.offset_m; }
+  std::string reference() const override { return "truth"; }
+
+  double region_side_m() const override {
+    return scene_.target.landmark >= 0 ? scene_.surface.landmarks[landmark()].side_m : scene_.target.side_m;
+  }
+
+  HandPicked picked() const override {
+    std::mt19937_64 random(stream_seed(scene_.seed, Stream::HAND));
+    std::uniform_real_distribution<double> shake(-scene_.target.pick_error_px, scene_.target.pick_error_px);
+    const auto pick = [&](tracking::Quad quad) {
+      for (auto& corner : quad) {
+        const double u = shake(random), v = shake(random);
+        corner += Eigen::Vector2d(u, v);
+      }
+      return quad;
+    };
+    HandPicked picked;
+    picked.target = pick(region_at(0));
+    const auto marker = marker_corners(scene_.tool, start_tip_);
+    tracking::Quad marker_px;
+    for (std::size_t i = 0; i < 4; ++i) marker_px[i] = camera_.project(marker[i]);
+    picked.marker = pick(marker_px);
+    return picked;
+  }
+
+  servo::TruthSample truth(const servo::LoopRecord& record) const override {
+    const double t = record.frame.time_s;
+    servo::TruthSample truth;
+    truth.target = pose_at(t).translation();
+    truth.goal = goal_at(t);
+    truth.tip = tip_;
+    truth.goal_px = camera_.project(*truth.goal);
+    truth.tip_px = camera_.project(*truth.tip);
+    truth.corners_px = region_at(t);
+    return truth;
+  }
+
+ private:
+  bool next(tracking::Frame& frame) override {
+    if (count_ >= scene_.frame_count()) return false;
+    frame = tracking::Frame{};
+    frame.sequence = count_;
+    frame.time_s = static_cast<double>(count_) / scene_.camera.frame_rate_hz;
+    robot_.advance_to(frame.time_s);
+    tip_ = robot_.true_tip_camera();
+    endoscope_.render(frame.time_s, count_, frame.grey, &tip_);
+    ++count_;
+    return true;
+  }
+  cv::Size size() const override { return {camera_.width, camera_.height}; }
+  double frame_rate_hz() const override { return scene_.camera.frame_rate_hz; }
+  std::optional<std::size_t> frame_count() const override { return scene_.frame_count(); }
+  std::string description() const override { return scene_.title; }
+
+  std::size_t landmark() const { return static_cast<std::size_t>(scene_.target.landmark); }
+
+  Eigen::Isometry3d pose_at(double t) const {
+    const HeartSurface& surface = endoscope_.surface();
+    return scene_.target.landmark >= 0 ? surface.T_camera_landmark(landmark(), t)
+                                       : surface.T_camera_point(scene_.target.x_m, scene_.target.y_m, t);
+  }
+  Eigen::Vector3d goal_at(double t) const { return pose_at(t) * scene_.loop.offset_m; }
+
+  // Corners of the region in the picture.
+  tracking::Quad region_at(double t) const {
+    const HeartSurface& surface = endoscope_.surface();
+    tracking::Quad quad;
+    if (scene_.target.landmark >= 0) {
+      const auto corners = surface.landmark_corners(landmark(), t);
+      for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(corners[i]);
+      return quad;
+    }
+    const double h = scene_.target.side_m / 2, x = scene_.target.x_m, y = scene_.target.y_m;
+    const tracking::Quad material = tracking::rectangle(x - h, y - h, 2 * h, 2 * h);
+    for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(surface.point(material[i].x(), material[i].y(), t));
+    return quad;
+  }
+
+  Scene scene_;
+  tracking::Camera camera_;
+  Endoscope endoscope_;
+  CartesianRobot robot_;
+  Eigen::Vector3d tip_ = robot_.true_tip_camera();
+  Eigen::Vector3d start_tip_ = tip_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Table> make_operating_table(const Scene& scene) { return std::make_unique<OperatingTable>(scene); }
+
+std::unique_ptr<Table> make_table(const Scene& scene) {
+  return scene.is_recorded() ? make_recorded_table(scene) : make_operating_table(scene);
+}
+
+}  // namespace heartservo::sim

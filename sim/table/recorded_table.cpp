@@ -1,0 +1,118 @@
+// A recorded sequence with a virtual tool: the robot is simulated, its tool is drawn into each frame, so that the loop
+// sees what it would see. The region's depth is assumed; there is no 3D truth.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "servo/loop/loop_record.hpp"
+#include "sim/endoscope/tool_view.hpp"
+#include "sim/robot/cartesian_robot.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/table/reference_track.hpp"
+#include "sim/table/table.hpp"
+#include "tracking/frames/open_source.hpp"
+#include "tracking/settings/errors.hpp"
+
+namespace heartservo::sim {
+
+namespace {
+
+constexpr double kClearance = 1.25;  // the tip stays this much outside the region's corner unless an offset is given
+
+class RecordedTable final : public Table, private tracking::FrameSource {
+ public:
+  explicit RecordedTable(const Scene& scene)
+      : scene_(scene),
+        source_(tracking::open_source(resolve(scene, scene.recording.source), scene.camera.frame_rate_hz)),
+        camera_(camera_of(scene, source_->size().width, source_->size().height)),
+        region_(picked_region()),
+        offset_(chosen_offset()),
+        view_(camera_, scene.tool),
+        robot_(scene.robot, target_start() + offset_ + scene.robot.start_error_m,
+               static_cast<std::uint64_t>(scene.seed)) {
+    if (!scene.recording.reference.empty())
+      reference_ = ReferenceTrack::read(resolve(scene, scene.recording.reference));
+    offset_px_ = camera_.project(target_start() + offset_) - camera_.project(target_start());
+  }
+
+  tracking::FrameSource& frames() override { return *this; }
+  servo::ToolRobot& robot() override { return robot_; }
+  const tracking::Camera& camera() const override { return camera_; }
+  Eigen::Vector3d marker_to_tip() const override { return -scene_.tool.marker_offset_m; }
+  Eigen::Vector3d offset() const override { return offset_; }
+  double region_side_m() const override { return 0; }
+  std::string reference() const override { return reference_ ? reference_->file() : "tracked"; }
+
+  HandPicked picked() const override {
+    const auto corners = marker_corners(scene_.tool, start_tip_);
+    HandPicked picked{region_, {}};
+    for (std::size_t i = 0; i < 4; ++i) picked.marker[i] = camera_.project(corners[i]);
+    return picked;
+  }
+
+  servo::TruthSample truth(const servo::LoopRecord& record) const override {
+    servo::TruthSample truth;
+    truth.tip_px = camera_.project(tip_);
+    if (reference_)
+      truth.goal_px = reference_->at(record.frame.time_s) + offset_px_;
+    else if (record.goal_now.allFinite())
+      truth.goal_px = camera_.project(record.goal_now);
+    return truth;
+  }
+
+ private:
+  bool next(tracking::Frame& frame) override {
+    if (count_ >= limit_ || !source_->next(frame)) return false;
+    ++count_;
+    robot_.advance_to(frame.time_s);
+    tip_ = robot_.true_tip_camera();
+    if (frame.status != tracking::FrameStatus::OK) return true;
+    frame.grey = frame.grey.clone();  // the source may keep its own
+    if (!frame.colour.empty()) frame.colour = frame.colour.clone();
+    draw_tool(view_, tip_, frame.grey, frame.colour.empty() ? nullptr : &frame.colour);
+    return true;
+  }
+  cv::Size size() const override { return source_->size(); }
+  double frame_rate_hz() const override { return source_->frame_rate_hz(); }
+  std::optional<std::size_t> frame_count() const override {
+    const auto count = source_->frame_count();
+    return count ? std::min(*count, limit_) : count;
+  }
+  std::string description() const override { return source_->description(); }
+
+  tracking::Quad picked_region() const {
+    const auto& roi = scene_.recording.roi;
+    const double w = camera_.width, h = camera_.height;
+    if (roi.size() == 4) return tracking::rectangle(roi[0], roi[1], roi[2], roi[3]);
+    const double side = std::round(0.2 * std::min(w, h));  // without a choice: the middle of the picture
+    return tracking::rectangle(std::round((w - side) / 2), std::round((h - side) / 2), side, side);
+  }
+  Eigen::Vector3d on_depth(const Eigen::Vector2d& pixel) const {
+    const Eigen::Vector2d n = camera_.normalise(pixel);
+    return scene_.recording.depth_m * Eigen::Vector3d(n.x(), n.y(), 1);
+  }
+  Eigen::Vector3d target_start() const { return on_depth(tracking::centre(region_)); }
+  Eigen::Vector3d chosen_offset() const {
+    if (!scene_.loop.offset_m.isZero()) return scene_.loop.offset_m;
+    return kClearance * (on_depth(region_[2]) - target_start());
+  }
+
+  Scene scene_;
+  std::unique_ptr<tracking::FrameSource> source_;
+  tracking::Camera camera_;
+  tracking::Quad region_;
+  Eigen::Vector3d offset_;
+  ToolView view_;
+  CartesianRobot robot_;
+  std::optional<ReferenceTrack> reference_;
+  Eigen::Vector2d offset_px_;
+  Eigen::Vector3d tip_ = robot_.true_tip_camera();
+  Eigen::Vector3d start_tip_ = tip_;
+  std::size_t count_ = 0, limit_ = scene_.frame_count();
+};
+
+}  // namespace
+
+std::unique_ptr<Table> make_recorded_table(const Scene& scene) { return std::make_unique<RecordedTable>(scene); }
+
+}  // namespace heartservo::sim

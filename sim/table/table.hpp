@@ -1,0 +1,48 @@
+#pragma once
+// What a loop runs on: a source of frames and a robot, simulated or recorded. Beside them, out of the loop's reach,
+// what truly was.
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+
+#include "servo/loop/score.hpp"
+#include "servo/robot/tool_robot.hpp"
+#include "tracking/camera/camera.hpp"
+#include "tracking/frames/frame_source.hpp"
+#include "tracking/planar/quad.hpp"
+
+namespace heartservo::servo {
+struct LoopRecord;
+}
+
+namespace heartservo::sim {
+
+struct Scene;
+
+/// What a person would give the loop at the start: the regions picked in the first frame.
+struct HandPicked {
+  tracking::Quad target, marker;
+};
+
+class Table {
+ public:
+  virtual ~Table() = default;
+  virtual tracking::FrameSource& frames() = 0;
+  virtual servo::ToolRobot& robot() = 0;
+  virtual const tracking::Camera& camera() const = 0;
+  virtual HandPicked picked() const = 0;
+  virtual Eigen::Vector3d marker_to_tip() const = 0;        ///< m, camera frame; the tool does not turn
+  virtual Eigen::Vector3d offset() const = 0;               ///< surgeon's offset in the target frame, m
+  virtual double region_side_m() const = 0;                 ///< of the square region followed
+  /// For the score. Call it after the loop's step, with what that step recorded.
+  virtual servo::TruthSample truth(const servo::LoopRecord& record) const = 0;
+  virtual std::string reference() const = 0;  ///< what the pixel residual is scored against: truth, tracked or a file
+};
+
+/// The simulated heart, or the recorded sequence that the scene names. Throws InputError, ConfigError.
+std::unique_ptr<Table> make_table(const Scene& scene);
+
+std::unique_ptr<Table> make_operating_table(const Scene& scene);
+std::unique_ptr<Table> make_recorded_table(const Scene& scene);
+
+}  // namespace heartservo::sim

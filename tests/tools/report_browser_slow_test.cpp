@@ -1,0 +1,74 @@
+// Opens a report in headless Chromium, where there is one: the plots are drawn, nothing is complained about, nothing is
+// asked of the network.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <regex>
+
+#include "tests/support/temporary_folder.hpp"
+#include "tests/tools/synthetic_report.hpp"
+
+namespace heartservo::tools {
+namespace {
+
+class ReportInBrowser : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifdef HEARTSERVO_SANITIZED
+    GTEST_SKIP() << "the browser sees the same page as without sanitizers";
+#endif
+    if (std::system("command -v chromium >/dev/null 2>&1") != 0)
+      GTEST_SKIP() << "chromium is not installed; ./run_tests.sh installs it";
+  }
+
+  // The page after its scripts have run. `log_` has what the browser said meanwhile.
+  std::string opened(const Report& report) {
+    const auto path = [&](const char* name) { return (folder_ / name).string(); };
+    write_report(report, path("report.html"));
+    const std::string command =
+        "timeout 100 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage"
+        " --disable-background-networking --disable-sync --no-first-run --enable-logging=stderr --v=0"
+        " --host-resolver-rules='MAP * ~NOTFOUND' --window-size=1280,900 --virtual-time-budget=4000"
+        " --user-data-dir=" +
+        path("profile") + " --dump-dom file://" + path("report.html") + " >" + path("dom.html") + " 2>" + path("log");
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    log_ = test::read_text(path("log"));
+    return test::read_text(path("dom.html"));
+  }
+
+  const test::TemporaryFolder folder_;
+  std::string log_;
+};
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+TEST_F(ReportInBrowser, DrawsEverythingWithoutComplaint) {
+  const TimeTable table = test::synthetic_table(1900);
+  const std::string dom = opened(test::synthetic_report(table));
+  EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
+  EXPECT_NE(dom.find("data-plots=\"5\""), std::string::npos) << "the script of the page did not reach its end";
+  EXPECT_NE(dom.find("heart z: from "), std::string::npos) << "what a screen reader says";
+  EXPECT_EQ(count(dom, "class=\"dygraph-rangesel-fgcanvas\""), 1u);
+  EXPECT_GT(count(dom, "dygraph-axis-label"), 50u) << "five plots with two axes";
+  EXPECT_NE(dom.find("</i>OK 94.7 %"), std::string::npos) << "how often the target was followed";
+}
+
+TEST_F(ReportInBrowser, CopesWithNoPlotsAndNoFrames) {
+  Report bare;
+  bare.title = "nothing";
+  opened(bare);
+  EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
+  const TimeTable empty = test::synthetic_table(0), one = test::synthetic_table(1);
+  const std::string dom = opened(test::synthetic_report(empty));
+  EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
+  EXPECT_NE(dom.find(">No frames.<"), std::string::npos);
+  opened(test::synthetic_report(one));
+  EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
+}
+
+}  // namespace
+}  // namespace heartservo::tools
