@@ -1,0 +1,13 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "tracking/frames/frame_source.hpp"
+
+namespace heartservo::tracking {
+
+/// Opens what is on disk: a folder of pictures, a printf pattern (dir/img%04d.png), one picture (a folder of one), or a
+/// video file. `frame_rate_hz` <= 0: a video's own rate, 25 Hz for pictures. Throws InputError naming the path.
+std::unique_ptr<FrameSource> open_source(const std::string& source, double frame_rate_hz);
+
+}  // namespace heartservo::tracking
