@@ -40,7 +40,7 @@ std::optional<Eigen::Isometry3d> visp_square_pose(const std::array<Eigen::Vector
         point.set_y(normalised_corners[i].y());
         pose.addPoint(point);
       }
-      vpHomogeneousMatrix cMo;
+      vpHomogeneousMatrix cMo;  // NOLINT(readability-identifier-naming): as ViSP writes it
       if (!pose.computePose(method, cMo)) continue;
       const double residual = pose.computeResidual(cMo);
       const Eigen::Isometry3d T = from_visp(cMo);
