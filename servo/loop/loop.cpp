@@ -19,11 +19,13 @@ Loop::Loop(tracking::FrameSource& frames, ToolRobot& robot, LoopStages stages, c
 
 std::string Loop::start(const tracking::Quad& target_region, const tracking::Quad& marker_region) {
   if (!frames_.next(frame_)) return "there is no frame";
-  if (std::string why = stages_.target_tracker->start(frame_, target_region); !why.empty()) return why;
-  if (stages_.marker_tracker)
-    if (std::string why = stages_.marker_tracker->start(frame_, marker_region); !why.empty())
-      return "tool marker: " + why;
-  return "";
+  const auto refined = [&](const auto& refine, const tracking::Quad& picked) {
+    return refine && frame_.status == tracking::FrameStatus::OK ? refine(frame_, picked) : picked;
+  };
+  std::string why = stages_.target_tracker->start(frame_, refined(stages_.refine_target, target_region));
+  if (!why.empty() || !stages_.marker_tracker) return why;
+  why = stages_.marker_tracker->start(frame_, refined(stages_.refine_marker, marker_region));
+  return why.empty() ? "" : "tool marker: " + why;
 }
 
 bool Loop::step(LoopRecord& record) {

@@ -26,6 +26,8 @@ struct LoopStages {
   std::unique_ptr<tracking::TargetEstimator> target_estimator, marker_estimator;
   std::unique_ptr<MotionPredictor> predictor;
   std::unique_ptr<ControlLaw> control_law;
+  /// Corners picked by hand in the first frame -> subpixel corners; empty: as picked.
+  std::function<tracking::Quad(const tracking::Frame&, const tracking::Quad&)> refine_target, refine_marker;
 };
 
 class Loop {

@@ -9,8 +9,10 @@ namespace heartservo::sim {
 ///
 /// A sum of smooth random cells of three sizes (a third, an eighth and a fifteenth of the side), each grid turned and
 /// shifted by its own irrational amounts so that nothing repeats or is symmetric; pressed towards three paint levels
-/// with soft edges; within a light rim. Gradients are strong in both directions at every scale from the plate to a few
-/// pixels, and different ids look different.
+/// with soft edges; within a dark frame within a light rim, whose common edge |x|, |y| = kFrameEdge is paint against
+/// paint and so the same on any tissue: corners picked by hand are refined on it. Gradients are strong in both
+/// directions at every scale from the plate to a few pixels, and different ids look different.
+inline constexpr double kFrameEdge = 0.84;
 double painted_pattern(std::uint32_t id, double x, double y);
 
 }  // namespace heartservo::sim

@@ -49,8 +49,10 @@ std::vector<std::string> Scene::validate() const {
   const auto add = [&](const std::vector<std::string>& more) {
     problems.insert(problems.end(), more.begin(), more.end());
   };
+  if (!is_recorded() && camera.frame_rate_hz < 1) problems.emplace_back("camera.frame_rate_hz is below 1 Hz");
   if (settle_s >= duration_s && !is_recorded())
-    problems.push_back(fmt::format("settle_s ({} s) leaves nothing of duration_s ({} s) to score", settle_s, duration_s));
+    problems.push_back(
+        fmt::format("settle_s ({} s) leaves nothing of duration_s ({} s) to score", settle_s, duration_s));
   if (frame_count() < 2 && !is_recorded()) problems.emplace_back("duration_s is shorter than two frames");
   if (target.landmark >= static_cast<int>(surface.landmarks.size()) && !is_recorded())
     problems.push_back(fmt::format("target.landmark is {} but surface.landmarks has {} entries", target.landmark,
@@ -60,6 +62,10 @@ std::vector<std::string> Scene::validate() const {
   if (tracking.uncertain_quality > tracking.ok_quality)
     problems.emplace_back("tracking.uncertain_quality is above tracking.ok_quality");
   if (!(loop.latency.total_s() < 2)) problems.emplace_back("loop.latency adds up to 2 s or more");
+  if (tool.marker_side_m <= 0 && loop.tip.use_marker)
+    problems.emplace_back("loop.tip.use_marker needs tool.marker_side_m above 0");
+  if (is_recorded() && engines.estimator != "assumed_depth")
+    problems.emplace_back("recorded frames have no landmark of known size: engines.estimator must be assumed_depth");
   add(motion.validate());
   add(surface.validate());
   add(picture.validate());

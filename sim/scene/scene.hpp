@@ -23,7 +23,8 @@ struct CameraOptions {
   void fields(FieldVisitor& v) {
     v.field({"calibration", "", "camera file (ROS, OpenCV or ViSP), relative to the scene; empty: a pinhole camera"},
             calibration);
-    v.field({"frame_rate_hz", "Hz", "frames per second", 1, 10000}, frame_rate_hz);
+    v.field({"frame_rate_hz", "Hz", "frames per second; 0 for recorded frames: a video's own rate, else 25", 0, 10000},
+            frame_rate_hz);
     v.field({"field_of_view_rad", "rad", "horizontal, of the assumed pinhole camera", 0.1, 2.5}, field_of_view_rad);
   }
 };
@@ -40,8 +41,9 @@ struct RecordingOptions {
             source);
     v.field({"depth_m", "m", "assumed distance of the region from the camera", 1e-3, 10}, depth_m);
     v.field({"roi", "px", "region to follow in the first frame: x, y, width, height", -1e5, 1e5}, roi, 0);
-    v.field({"reference", "", "CSV with time_s, u_px, v_px: where the region's centre truly is, for the score; empty: "
-                              "scored against the tracked region"},
+    v.field({"reference", "",
+             "CSV with time_s, u_px, v_px: where the region's centre truly is, for the score; empty: "
+             "scored against the tracked region"},
             reference);
   }
 };
@@ -85,7 +87,10 @@ struct Scene {
   tracking::TrackerOptions tracking;
   servo::LoopOptions loop;
 
-  std::string folder = ".";  ///< not a key: where relative paths start
+  // Not keys: from the command line, or from where the scene lies.
+  std::string folder = ".";    ///< where relative paths start
+  std::size_t max_frames = 0;  ///< 0: all of them
+  bool show_tool = true;       ///< false: a look at the heart alone
 
   bool is_recorded() const { return !recording.source.empty(); }
   std::size_t frame_count() const;

@@ -4,6 +4,7 @@
 
 #include "servo/loop/loop_record.hpp"
 #include "sim/endoscope/endoscope.hpp"
+#include "sim/endoscope/painted_pattern.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/table/table.hpp"
 
@@ -22,11 +23,12 @@ class OperatingTable final : public Table, private tracking::FrameSource {
   explicit OperatingTable(const Scene& scene)
       : scene_(scene),
         camera_(camera_of(scene, 0, 0)),
-        endoscope_(camera_,
-                   HeartSurface(scene.surface,
-                                HeartMotion(scene.motion, stream_seed(scene.seed, Stream::MOTION), scene.duration_s + 1),
-                                stream_seed(scene.seed, Stream::SURFACE)),
-                   scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
+        endoscope_(
+            camera_,
+            HeartSurface(scene.surface,
+                         HeartMotion(scene.motion, stream_seed(scene.seed, Stream::MOTION), scene.duration_s + 1),
+                         stream_seed(scene.seed, Stream::SURFACE)),
+            scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
         robot_(scene.robot, goal_at(0) + scene.robot.start_error_m, stream_seed(scene.seed, Stream::ROBOT)) {}
 
   tracking::FrameSource& frames() override { return *this; }
@@ -36,6 +38,7 @@ class OperatingTable final : public Table, private tracking::FrameSource {
   Eigen::Vector3d offset() const override { return scene_.loop.offset_m; }
   std::string reference() const override { return "truth"; }
 
+  double marker_side_m() const override { return scene_.tool.marker_side_m; }
   double region_side_m() const override {
     return scene_.target.landmark >= 0 ? scene_.surface.landmarks[landmark()].side_m : scene_.target.side_m;
   }
@@ -52,6 +55,8 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     };
     HandPicked picked;
     picked.target = pick(region_at(0));
+    picked.target_edge_ratio = scene_.target.landmark >= 0 ? kFrameEdge : 0;
+    picked.marker_edge_ratio = kFrameEdge;
     const auto marker = marker_corners(scene_.tool, start_tip_);
     tracking::Quad marker_px;
     for (std::size_t i = 0; i < 4; ++i) marker_px[i] = camera_.project(marker[i]);
@@ -79,7 +84,7 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     frame.time_s = static_cast<double>(count_) / scene_.camera.frame_rate_hz;
     robot_.advance_to(frame.time_s);
     tip_ = robot_.true_tip_camera();
-    endoscope_.render(frame.time_s, count_, frame.grey, &tip_);
+    endoscope_.render(frame.time_s, count_, frame.grey, scene_.show_tool ? &tip_ : nullptr);
     ++count_;
     return true;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "servo/loop/loop_record.hpp"
+#include "sim/endoscope/painted_pattern.hpp"
 #include "sim/endoscope/tool_view.hpp"
 #include "sim/robot/cartesian_robot.hpp"
 #include "sim/scene/scene.hpp"
@@ -41,11 +42,14 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   Eigen::Vector3d marker_to_tip() const override { return -scene_.tool.marker_offset_m; }
   Eigen::Vector3d offset() const override { return offset_; }
   double region_side_m() const override { return 0; }
+  double marker_side_m() const override { return scene_.tool.marker_side_m; }
   std::string reference() const override { return reference_ ? reference_->file() : "tracked"; }
 
   HandPicked picked() const override {
     const auto corners = marker_corners(scene_.tool, start_tip_);
-    HandPicked picked{region_, {}};
+    HandPicked picked;
+    picked.target = region_;
+    picked.marker_edge_ratio = kFrameEdge;
     for (std::size_t i = 0; i < 4; ++i) picked.marker[i] = camera_.project(corners[i]);
     return picked;
   }
@@ -66,7 +70,7 @@ class RecordedTable final : public Table, private tracking::FrameSource {
     ++count_;
     robot_.advance_to(frame.time_s);
     tip_ = robot_.true_tip_camera();
-    if (frame.status != tracking::FrameStatus::OK) return true;
+    if (frame.status != tracking::FrameStatus::OK || !scene_.show_tool) return true;
     frame.grey = frame.grey.clone();  // the source may keep its own
     if (!frame.colour.empty()) frame.colour = frame.colour.clone();
     draw_tool(view_, tip_, frame.grey, frame.colour.empty() ? nullptr : &frame.colour);
@@ -108,7 +112,7 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   Eigen::Vector2d offset_px_;
   Eigen::Vector3d tip_ = robot_.true_tip_camera();
   Eigen::Vector3d start_tip_ = tip_;
-  std::size_t count_ = 0, limit_ = scene_.frame_count();
+  std::size_t count_ = 0, limit_ = scene_.max_frames > 0 ? scene_.max_frames : SIZE_MAX;
 };
 
 }  // namespace

@@ -47,7 +47,8 @@ ReferenceTrack ReferenceTrack::read(const std::string& file) {
       good = error == std::errc() && stop == end;
     }
     if (!good || !std::isfinite(values[0]) || (!track.time_s_.empty() && !(values[0] > track.time_s_.back())))
-      throw InputError(fmt::format("{}:{}: expected a later time and two pixel coordinates, or empty cells", file, number));
+      throw InputError(
+          fmt::format("{}:{}: expected a later time and two pixel coordinates, or empty cells", file, number));
     track.time_s_.push_back(values[0]);
     track.points_.emplace_back(values[1], values[2]);
   }

@@ -22,6 +22,8 @@ struct Scene;
 /// What a person would give the loop at the start: the regions picked in the first frame.
 struct HandPicked {
   tracking::Quad target, marker;
+  /// Painted plates have an edge to refine the corners on: its side relative to the plate's; 0 for bare tissue.
+  double target_edge_ratio = 0, marker_edge_ratio = 0;
 };
 
 class Table {
@@ -31,9 +33,9 @@ class Table {
   virtual servo::ToolRobot& robot() = 0;
   virtual const tracking::Camera& camera() const = 0;
   virtual HandPicked picked() const = 0;
-  virtual Eigen::Vector3d marker_to_tip() const = 0;        ///< m, camera frame; the tool does not turn
-  virtual Eigen::Vector3d offset() const = 0;               ///< surgeon's offset in the target frame, m
-  virtual double region_side_m() const = 0;                 ///< of the square region followed
+  virtual Eigen::Vector3d marker_to_tip() const = 0;  ///< m, camera frame; the tool does not turn
+  virtual Eigen::Vector3d offset() const = 0;         ///< surgeon's offset in the target frame, m
+  virtual double region_side_m() const = 0;           ///< of the square region followed
   /// For the score. Call it after the loop's step, with what that step recorded.
   virtual servo::TruthSample truth(const servo::LoopRecord& record) const = 0;
   virtual std::string reference() const = 0;  ///< what the pixel residual is scored against: truth, tracked or a file

@@ -33,10 +33,14 @@ class Registry {
     return result;
   }
 
-  /// Throws ConfigError for an unknown name, with a suggestion.
   std::unique_ptr<Interface> make(const std::string& name, Arguments... arguments) const {
+    return require(name).make(arguments...);
+  }
+
+  /// Throws ConfigError for an unknown name, with a suggestion.
+  const Engine& require(const std::string& name) const {
     for (const auto& engine : engines_)
-      if (engine.name == name) return engine.make(arguments...);
+      if (engine.name == name) return engine;
     throw ConfigError(fmt::format("{} '{}' is not known{}; choose one of {}", kind_, name, did_you_mean(name, names()),
                                   fmt::join(names(), ", ")));
   }

@@ -1,0 +1,51 @@
+#include "sim/table/stages.hpp"
+
+#include "sim/scene/scene.hpp"
+#include "sim/table/table.hpp"
+#include "tracking/frames/frame.hpp"
+#include "tracking/landmark/registry.hpp"
+#include "tracking/landmark/square_refinement.hpp"
+#include "tracking/planar/registry.hpp"
+
+namespace heartservo::sim {
+
+namespace {
+
+auto refiner(const tracking::Camera& camera, double edge_ratio) {
+  return [camera, edge_ratio](const tracking::Frame& frame, const tracking::Quad& picked) {
+    return edge_ratio > 0 ? tracking::refine_square(frame.grey, camera, picked, edge_ratio).corners : picked;
+  };
+}
+
+}  // namespace
+
+servo::LoopStages make_stages(const Scene& scene, const Table& table) {
+  servo::LoopStages stages;
+  const tracking::Camera& camera = table.camera();
+  const HandPicked picked = table.picked();
+  tracking::EstimatorOptions estimator;
+  estimator.camera = camera;
+  estimator.side_m = table.region_side_m();
+  estimator.depth_m = scene.recording.depth_m;
+  stages.target_tracker = tracking::trackers().make(scene.engines.tracker, camera, scene.tracking);
+  stages.target_estimator = tracking::estimators().make(scene.engines.estimator, estimator);
+  stages.refine_target = refiner(camera, picked.target_edge_ratio);
+  if (scene.loop.tip.use_marker) {
+    estimator.side_m = table.marker_side_m();
+    stages.marker_tracker = tracking::trackers().make(scene.engines.tracker, camera, scene.tracking);
+    stages.marker_estimator = tracking::estimators().make("landmark_refined", estimator);
+    stages.refine_marker = refiner(camera, picked.marker_edge_ratio);
+  }
+  stages.predictor = servo::predictors().make(scene.engines.predictor, scene.loop.prediction);
+  stages.control_law = servo::control_laws().make(scene.engines.controller, scene.loop.control);
+  return stages;
+}
+
+servo::LoopOptions loop_options(const Scene& scene, Table& table) {
+  servo::LoopOptions options = scene.loop;
+  options.frame_rate_hz = table.frames().frame_rate_hz();
+  options.offset_m = table.offset();
+  return options;
+}
+
+}  // namespace heartservo::sim

@@ -1,0 +1,84 @@
+#include "tools/command.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "tools/run_folder.hpp"
+#include "tracking/settings/errors.hpp"
+#include "tracking/settings/yaml_writer.hpp"
+
+namespace heartservo::tools {
+
+namespace {
+
+constexpr double kEndless_s = 1e5;
+
+std::string absolute(const std::string& path) { return std::filesystem::absolute(path).lexically_normal().string(); }
+
+// Defaults for frames from disk: an assumed depth instead of a landmark.
+sim::Scene recorded_scene(const std::string& source) {
+  sim::Scene scene;
+  scene.title = source;
+  scene.recording.source = absolute(source);
+  scene.camera.frame_rate_hz = 0;  // the source's own: a video's rate, 25 Hz for pictures
+  scene.engines.estimator = "assumed_depth";
+  scene.duration_s = kEndless_s;
+  return scene;
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& o, const std::string& source_help) {
+  command.add_option("source", o.source, source_help);
+  command.add_option("--out", o.out, "run folder (default: runs/COMMAND-NAME-DATE)")->type_name("DIR");
+  command.add_option("--seed", o.seed, "seed of every random draw")->check(CLI::Range(0, 2000000000));
+  command.add_option("--frames", o.frames, "number of frames")->check(CLI::Range(2, 2000000000));
+  command.add_flag("--json", o.json, "print summary.json on stdout and nothing else");
+  command.add_flag("--quiet", o.quiet, "no progress and no table");
+}
+
+void add_recording_options(CLI::App& command, RecordedOptions& o) {
+  command.add_option("--roi", o.roi, "region in the first frame: x,y,width,height in px")->delimiter(',')->expected(4);
+  command.add_option("--camera", o.camera, "camera file (ROS, OpenCV, ViSP)")->type_name("FILE");
+  command.add_option("--frame-rate-hz", o.frame_rate_hz, "frames per second of recorded frames")
+      ->check(CLI::Range(0.1, 10000.0));
+}
+
+bool is_scene(const std::string& source) {
+  const std::string extension = std::filesystem::path(source).extension().string();
+  return extension == ".yaml" || extension == ".yml";
+}
+
+sim::Scene scene_for(const RunOptions& run, const RecordedOptions& recorded) {
+  if (run.source.empty()) throw ConfigError("SOURCE is missing: give a scene such as scenes/pig_2007.yaml, or frames");
+  sim::Scene scene = is_scene(run.source) ? sim::load_scene(run.source) : recorded_scene(run.source);
+  if (run.seed) scene.seed = *run.seed;
+  if (!recorded.roi.empty()) scene.recording.roi = recorded.roi;
+  if (!recorded.camera.empty()) scene.camera.calibration = absolute(recorded.camera);
+  if (recorded.frame_rate_hz > 0) scene.camera.frame_rate_hz = recorded.frame_rate_hz;
+  if (recorded.depth_mm > 0) scene.recording.depth_m = 1e-3 * recorded.depth_mm;
+  if (!scene.is_recorded() && (!recorded.roi.empty() || recorded.depth_mm > 0))
+    throw ConfigError("--roi and --depth-mm are for recorded frames; a simulated scene has its region under 'target'");
+  if (run.frames) scene.max_frames = static_cast<std::size_t>(*run.frames);
+  if (run.frames && !scene.is_recorded())
+    scene.duration_s = static_cast<double>(*run.frames) / scene.camera.frame_rate_hz;
+  return scene;
+}
+
+std::string stem_of(const std::string& source) {
+  std::filesystem::path path(source);
+  if (!path.has_filename()) path = path.parent_path();
+  return path.stem().string();
+}
+
+std::string config_text(const sim::Scene& scene, const std::string& command) {
+  return fmt::format("# heartservo {} {}: the resolved configuration; paths are relative to {}\n{}", HEARTSERVO_VERSION,
+                     command, std::filesystem::absolute(scene.folder).lexically_normal().string(), to_yaml(scene));
+}
+
+std::filesystem::path run_path(const RunOptions& options, const std::string& command) {
+  return options.out.empty() ? default_run_path(command, stem_of(options.source)) : std::filesystem::path(options.out);
+}
+
+}  // namespace heartservo::tools

@@ -1,0 +1,66 @@
+#pragma once
+// What the commands share. A command is one file, NAME_command.cpp, that adds itself to the program in main.cpp.
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "sim/scene/scene.hpp"
+
+namespace heartservo::tools {
+
+/// Exit codes (a contract: scripts depend on them).
+enum ExitCode {
+  DONE = 0,
+  INTERNAL_ERROR = 1,
+  WRONG_USAGE = 2,
+  BAD_INPUT = 3,
+  DEVICE_TROUBLE = 4,
+  SAFETY_STOP = 5,
+  INTERRUPTED = 130
+};
+
+/// A subcommand and what it does once parsed.
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;
+};
+
+Command add_servo_command(CLI::App& program);
+Command add_track_command(CLI::App& program);
+Command add_render_command(CLI::App& program);
+
+/// Options of every command that makes a run.
+struct RunOptions {
+  std::string source;
+  std::string out;
+  bool json = false, quiet = false, list = false;
+  std::optional<int> seed, frames;
+};
+void add_run_options(CLI::App& command, RunOptions& options, const std::string& source_help);
+
+/// How to look at a recorded source; add_recording_options() gives them to a command.
+struct RecordedOptions {
+  std::vector<double> roi;
+  std::string camera;
+  double frame_rate_hz = 0, depth_mm = 0;
+};
+void add_recording_options(CLI::App& command, RecordedOptions& options);
+
+/// True for a scene file (.yaml or .yml), false for frames.
+bool is_scene(const std::string& source);
+
+/// The scene that `source` names, or one made around recorded frames, with the command line's choices in it. Throws
+/// ConfigError, InputError.
+sim::Scene scene_for(const RunOptions& run, const RecordedOptions& recorded);
+
+/// "pig_2007" of scenes/pig_2007.yaml, "left" of heart/left/.
+std::string stem_of(const std::string& source);
+
+/// config.yaml: the resolved scene, with the program's version and the command in a comment.
+std::string config_text(const sim::Scene& scene, const std::string& command);
+
+/// Where the run goes: --out, or a folder made of command, source and date.
+std::filesystem::path run_path(const RunOptions& options, const std::string& command);
+
+}  // namespace heartservo::tools

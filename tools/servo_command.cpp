@@ -1,0 +1,200 @@
+// heartservo servo: closes the loop on a scene or on recorded frames, prints the residual table, leaves a run folder.
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "servo/loop/loop.hpp"
+#include "servo/loop/score.hpp"
+#include "sim/table/stages.hpp"
+#include "sim/table/table.hpp"
+#include "tools/command.hpp"
+#include "tools/interrupt.hpp"
+#include "tools/loop_table.hpp"
+#include "tools/overlay.hpp"
+#include "tools/progress.hpp"
+#include "tools/run_folder.hpp"
+#include "tools/servo_report.hpp"
+#include "tools/servo_summary.hpp"
+#include "tracking/planar/registry.hpp"
+#include "tracking/settings/errors.hpp"
+#include "tracking/settings/yaml_writer.hpp"
+
+namespace heartservo::tools {
+
+namespace {
+
+constexpr double kFlight_s = 2;  // of the flight recording after a safety stop
+
+struct ServoOptions {
+  RunOptions run;
+  RecordedOptions recorded;
+  std::string tracker, estimator, predictor, controller, robot, reference;
+  double latency_ms = -1, settle_s = -1;
+};
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+template <class Registry>
+void print_engines(const char* kind, const Registry& registry) {
+  for (const auto& engine : registry.engines()) fmt::print("{:<12}{:<20}{}\n", kind, engine.name, engine.summary);
+}
+
+int list_engines() {
+  print_engines("tracker", tracking::trackers());
+  print_engines("predictor", servo::predictors());
+  print_engines("controller", servo::control_laws());
+  fmt::print("{:<12}{:<20}{}\n{:<12}{:<20}{}\n", "robot", "cartesian", "second order, limits, encoder noise", "robot",
+             "ideal", "follows its reference exactly");
+  return DONE;
+}
+
+sim::Scene configure(const ServoOptions& o) {
+  sim::Scene scene = scene_for(o.run, o.recorded);
+  const auto choose = [](std::string& name, const std::string& wanted, const auto& registry) {
+    if (wanted.empty()) return;
+    registry.require(wanted);
+    name = wanted;
+  };
+  choose(scene.engines.tracker, o.tracker, tracking::trackers());
+  choose(scene.engines.predictor, o.predictor, servo::predictors());
+  choose(scene.engines.controller, o.controller, servo::control_laws());
+  if (!o.robot.empty()) scene.robot.type = o.robot;
+  if (!o.reference.empty()) scene.recording.reference = std::filesystem::absolute(o.reference).string();
+  if (o.latency_ms >= 0) scene.loop.latency.set_total(1e-3 * o.latency_ms);
+  if (o.settle_s >= 0) scene.settle_s = o.settle_s;
+  sim::require_valid(scene, o.run.source);
+  return scene;
+}
+
+// Pictures worth a look: an early one, and the worst moment of the scored part.
+class Album {
+ public:
+  explicit Album(double settle_s) : settle_s_(settle_s) {}
+
+  void look_at(const servo::LoopRecord& r, const servo::TruthSample& truth) {
+    if (r.frame.status != tracking::FrameStatus::OK) return;
+    const double t = r.frame.time_s, residual = (truth.tip_px - truth.goal_px).norm();
+    const bool settled = t >= settle_s_;
+    if (first_.empty() || (settled && !have_settled_)) {
+      first_ = drawn(r, truth);
+      first_time_ = t;
+      have_settled_ = settled;
+    }
+    if (settled && residual > worst_residual_) {
+      worst_residual_ = residual;
+      worst_ = drawn(r, truth);
+      worst_time_ = t;
+    }
+  }
+
+  std::vector<ReportPicture> pictures() const {
+    std::vector<ReportPicture> result;
+    const char* legend = "region (blue: followed), goal (ring), tip (cross)";
+    if (!first_.empty()) result.push_back({fmt::format("{:.2f} s: {}", first_time_, legend), first_});
+    if (!worst_.empty())
+      result.push_back({fmt::format("{:.2f} s: the worst moment, {:.1f} px from the goal", worst_time_, worst_residual_),
+                        worst_});
+    return result;
+  }
+
+ private:
+  static cv::Mat drawn(const servo::LoopRecord& r, const servo::TruthSample& truth) {
+    cv::Mat canvas = canvas_of(r.frame);
+    draw_region(canvas, r.track);
+    draw_goal_and_tip(canvas, truth.goal_px, truth.tip_px);
+    return canvas;
+  }
+
+  double settle_s_, first_time_ = 0, worst_time_ = 0, worst_residual_ = 0;
+  bool have_settled_ = false;
+  cv::Mat first_, worst_;
+};
+
+int run_servo(const ServoOptions& o) {
+  if (o.run.list) return list_engines();
+  const sim::Scene scene = configure(o);
+  const auto table = sim::make_table(scene);
+  const servo::LoopOptions loop_options = sim::loop_options(scene, *table);
+  servo::Loop loop(table->frames(), table->robot(), sim::make_stages(scene, *table), loop_options,
+                   table->marker_to_tip(), now_s);
+  const auto picked = table->picked();
+  if (const std::string why = loop.start(picked.target, picked.marker); !why.empty())
+    throw ConfigError(fmt::format("{}: the region cannot be tracked: {}", o.run.source, why));
+
+  const std::size_t expected = table->frames().frame_count().value_or(0);
+  TimeTable frames = make_loop_table(std::max<std::size_t>(expected, 1024));
+  servo::Score score(scene.settle_s, 1 / loop_options.frame_rate_hz);
+  score.reserve(std::max<std::size_t>(expected, 1024));
+  Album album(scene.settle_s);
+  ServoRunFacts facts;
+  RunFolder folder(run_path(o.run, "servo"));
+  const double begin = now_s();
+  {
+    const Interrupt interrupt;
+    Progress progress("servo " + stem_of(o.run.source), expected, o.run.quiet);
+    servo::LoopRecord record;
+    while (!(facts.interrupted = interrupt.requested()) && loop.step(record)) {
+      const servo::TruthSample truth = table->truth(record);
+      score.add(record, truth);
+      append(frames, record, truth);
+      album.look_at(record, truth);
+      progress.update(frames.rows());
+    }
+  }
+  facts.scene = is_scene(o.run.source) ? stem_of(o.run.source) : o.run.source;
+  facts.reference = table->reference();
+  facts.camera = scene.camera.calibration.empty() ? "assumed pinhole" : scene.camera.calibration;
+  facts.frame_rate_hz = loop_options.frame_rate_hz;
+  facts.stop_reason = loop.stop_reason();
+  facts.real_time_factor =
+      static_cast<double>(frames.rows()) / loop_options.frame_rate_hz / std::max(1e-9, now_s() - begin);
+
+  const auto summary = servo_summary(score.summary(), scene, facts);
+  const std::string config = config_text(scene, "servo");
+  frames.write_csv(folder.file("frames.csv"));
+  folder.write("config.yaml", config);
+  folder.write("summary.json", summary.dump(2) + "\n");
+  write_report(servo_report(summary, with_motion(frames), album.pictures(), config), folder.file("report.html"));
+  if (!facts.stop_reason.empty()) tail(frames, kFlight_s).write_csv(folder.file("flight.csv"));
+  folder.finish();
+  if (o.run.json)
+    fmt::print("{}\n", summary.dump(2));
+  else if (!o.run.quiet)
+    fmt::print("{}\nreport: {}\n", residual_table(summary), folder.file("report.html").string());
+  if (!facts.stop_reason.empty()) {
+    fmt::print(stderr, "heartservo: safety stop: {}; the last {} s are in {}\n", facts.stop_reason, kFlight_s,
+               folder.file("flight.csv").string());
+    return SAFETY_STOP;
+  }
+  return facts.interrupted ? INTERRUPTED : DONE;
+}
+
+}  // namespace
+
+Command add_servo_command(CLI::App& program) {
+  auto options = std::make_shared<ServoOptions>();
+  ServoOptions& o = *options;
+  CLI::App* app = program.add_subcommand("servo", "close the loop, print the residual table, leave a run folder");
+  add_run_options(*app, o.run, "scene (.yaml), image folder, printf pattern or video");
+  add_recording_options(*app, o.recorded);
+  app->add_option("--depth-mm", o.recorded.depth_mm, "assumed distance of the region in recorded frames")
+      ->check(CLI::Range(1.0, 10000.0));
+  app->add_option("--reference", o.reference, "CSV time_s,u_px,v_px: where the region truly is, to score recorded frames")
+      ->type_name("FILE");
+  app->add_option("--tracker", o.tracker, "overrides the scene's tracker");
+  app->add_option("--predictor", o.predictor, "overrides the scene's predictor");
+  app->add_option("--controller", o.controller, "overrides the scene's control law");
+  app->add_option("--robot", o.robot, "overrides the scene's robot")->check(CLI::IsMember({"cartesian", "ideal"}));
+  app->add_option("--latency-ms", o.latency_ms, "total latency; the scene's parts keep their proportions")
+      ->check(CLI::Range(0.0, 1900.0));
+  app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(CLI::Range(0.0, 1e4));
+  app->add_flag("--list", o.run.list, "list the engines and exit");
+  app->footer("Examples:\n  heartservo servo scenes/pig_2007.yaml\n"
+              "  heartservo servo scenes/pig_2007.yaml --predictor hold --controller ibvs --json\n"
+              "  heartservo servo recorded/frames --roi 150,130,60,60 --frame-rate-hz 25 --depth-mm 45");
+  return {app, [options] { return run_servo(*options); }};
+}
+
+}  // namespace heartservo::tools
