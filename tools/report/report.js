@@ -110,7 +110,7 @@
       legend: 'always', legendFormatter: legend, strokeWidth: 1.3, highlightCircleSize: 3, axisLabelFontSize: 12,
       xRangePad: 0, interactionModel: interaction(), showRangeSelector: first, rangeSelectorHeight: 28,
       axes: {
-        x: {valueFormatter: seconds, axisLabelFormatter: v => +v.toFixed(6) + (first ? ' s' : ''), pixelsPerLabel: 70},
+        x: {valueFormatter: seconds, axisLabelFormatter: v => +v.toFixed(6) + ' s', pixelsPerLabel: 70},
         y: {valueFormatter: short, axisLabelWidth: 44, pixelsPerLabel: 32}
       },
       underlayCallback: (context, area, me) => paint(context, me, () => area.y, () => area.h,
@@ -160,11 +160,15 @@
   // The window does not resize for paper.
   const open = [];
   addEventListener('beforeprint', () => {
-    graphs.forEach(p => { p.g.resize(PRINT_WIDTH, 190); });
-    recolour();
-    document.querySelectorAll('details.print:not([open])').forEach(d => { d.open = true; open.push(d); });
+    document.documentElement.classList.add('paper');  // the page is still dark at this moment, if it is
+    graphs.forEach((p, i) => {
+      p.g.updateOptions(look(p.count), true);
+      p.g.resize(PRINT_WIDTH, i === 0 ? 250 : 190);
+    });
+    document.querySelectorAll('details:not([open])').forEach(d => { d.open = true; open.push(d); });
   });
   addEventListener('afterprint', () => {
+    document.documentElement.classList.remove('paper');
     graphs.forEach(p => {
       p.g.graphDiv.parentNode.style.width = p.g.graphDiv.parentNode.style.height = '';
       p.g.resize();
