@@ -65,6 +65,12 @@ TEST_F(ReportInBrowser, ZoomsAllPlotsTogether) {
   EXPECT_NE(dom.find("<body class=\"zoomed\">"), std::string::npos);
   EXPECT_EQ(count(dom, ">0 s<"), 0u) << "a plot still begins where the run begins";
   EXPECT_EQ(count(dom, ">10 s<"), 5u);
+  const std::string point =
+      opened(test::synthetic_report(table),
+             "const c = document.querySelectorAll('#plot2 canvas')[1], r = c.getBoundingClientRect();"
+             "c.dispatchEvent(new MouseEvent('mousemove', {clientX: r.left + 300, clientY: r.top + "
+             "50, bubbles: true}));");
+  EXPECT_EQ(count(point, "class=\"at\">at "), 5u) << "all plots show their values at the same time";
   const std::string back = opened(test::synthetic_report(table), press + "+'}));" + press + "0'}));");
   EXPECT_EQ(back.find("<body class=\"zoomed\">"), std::string::npos);
   EXPECT_EQ(count(back, ">0 s<"), 5u) << "the whole run again";

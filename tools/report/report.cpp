@@ -23,7 +23,8 @@ std::string plot_figure(const ReportPlot& plot, std::size_t index, bool strip) {
                   escaped(plot.title), index);
   if (!plot.note.empty()) html += fmt::format("<p class=\"note\">{}</p>\n", escaped(plot.note));
   html += fmt::format(
-      "<div class=\"unit\"><span>{}</span><button class=\"whole\" type=\"button\">Whole run</button></div>\n<div "
+      "<div class=\"unit\"><span>{}</span><span class=\"at\"></span><button class=\"whole\" type=\"button\">Whole "
+      "run</button></div>\n<div "
       "class=\"plot\" id=\"plot{}\" role=\"img\" tabindex=\"0\" aria-label=\"{}\" "
       "aria-describedby=\"hint\"></div>\n",
       escaped(plot.y_label), index, escaped(plot.title));
