@@ -13,7 +13,9 @@ target_compile_options(heartservo_options INTERFACE -Wall -Wextra -Wshadow -Wnon
                        -fno-math-errno -fno-trapping-math)
 if(HEARTSERVO_SANITIZE)
   target_compile_options(heartservo_options INTERFACE -fsanitize=${HEARTSERVO_SANITIZE} -fno-omit-frame-pointer
-                         -fno-sanitize-recover=all)
+                         -fno-sanitize-recover=all
+                         # GCC 12 reports instrumented code of std::regex
+                         -Wno-maybe-uninitialized)
   target_link_options(heartservo_options INTERFACE -fsanitize=${HEARTSERVO_SANITIZE})
   target_compile_definitions(heartservo_options INTERFACE HEARTSERVO_SANITIZED)
 endif()

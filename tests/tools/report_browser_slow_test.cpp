@@ -21,10 +21,10 @@ class ReportInBrowser : public testing::Test {
       GTEST_SKIP() << "chromium is not installed; ./run_tests.sh installs it";
   }
 
-  // The page after its scripts have run. `log_` has what the browser said meanwhile.
-  std::string opened(const Report& report) {
+  // The page after its scripts and then `script` have run. `log_` has what the browser said meanwhile.
+  std::string opened(const Report& report, const std::string& script = "") {
     const auto path = [&](const char* name) { return (folder_ / name).string(); };
-    write_report(report, path("report.html"));
+    test::write_text(path("report.html"), report_html(report) + "<script>" + script + "</script>");
     const std::string command =
         "timeout 100 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage"
         " --disable-background-networking --disable-sync --no-first-run --enable-logging=stderr --v=0"
@@ -54,7 +54,26 @@ TEST_F(ReportInBrowser, DrawsEverythingWithoutComplaint) {
   EXPECT_NE(dom.find("heart z: from "), std::string::npos) << "what a screen reader says";
   EXPECT_EQ(count(dom, "class=\"dygraph-rangesel-fgcanvas\""), 1u);
   EXPECT_GT(count(dom, "dygraph-axis-label"), 50u) << "five plots with two axes";
-  EXPECT_NE(dom.find("</i>OK 94.7 %"), std::string::npos) << "how often the target was followed";
+  EXPECT_NE(dom.find("</i>OK 96.9 %"), std::string::npos) << "how often the target was followed";
+}
+
+TEST_F(ReportInBrowser, ZoomsAllPlotsTogether) {
+  const TimeTable table = test::synthetic_table(1900);
+  const std::string press = "document.getElementById('plot1').dispatchEvent(new KeyboardEvent('keydown', {key: '";
+  const std::string dom = opened(test::synthetic_report(table), press + "+'}));");
+  EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
+  EXPECT_NE(dom.find("<body class=\"zoomed\">"), std::string::npos);
+  EXPECT_EQ(count(dom, ">0 s<"), 0u) << "a plot still begins where the run begins";
+  EXPECT_EQ(count(dom, ">10 s<"), 5u);
+  const std::string point =
+      opened(test::synthetic_report(table),
+             "const c = document.querySelectorAll('#plot2 canvas')[1], r = c.getBoundingClientRect();"
+             "c.dispatchEvent(new MouseEvent('mousemove', {clientX: r.left + 300, clientY: r.top + "
+             "50, bubbles: true}));");
+  EXPECT_EQ(count(point, "class=\"at\">at "), 5u) << "all plots show their values at the same time";
+  const std::string back = opened(test::synthetic_report(table), press + "+'}));" + press + "0'}));");
+  EXPECT_EQ(back.find("<body class=\"zoomed\">"), std::string::npos);
+  EXPECT_EQ(count(back, ">0 s<"), 5u) << "the whole run again";
 }
 
 TEST_F(ReportInBrowser, CopesWithNoPlotsAndNoFrames) {

@@ -84,14 +84,14 @@ std::string image(const ReportPicture& picture) {
   std::vector<unsigned char> png;
   cv::imencode(".png", shown, png, {cv::IMWRITE_PNG_COMPRESSION, 6});
   return fmt::format(
-      "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
+      "<figure class=\"picture\"><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
       "<figcaption>{}</figcaption></figure>\n",
       shown.cols, shown.rows, escaped(picture.caption), base64(png), escaped(picture.caption));
 }
 
 std::string table(const ReportTable& table) {
   std::string html =
-      fmt::format("<div{}><h2>{}</h2>\n", table.header.size() > 3 ? " class=\"wide\"" : "", escaped(table.title));
+      fmt::format("<div{}><h2>{}</h2>\n", table.header.size() > 5 ? " class=\"wide\"" : "", escaped(table.title));
   if (!table.note.empty()) html += fmt::format("<p class=\"note\">{}</p>\n", escaped(table.note));
   html += "<div class=\"scroll\"><table>\n";
   // in a comparison a column is numeric when all its cells look like numbers

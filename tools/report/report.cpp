@@ -18,13 +18,14 @@ namespace {
 using markup::escaped;
 
 std::string plot_figure(const ReportPlot& plot, std::size_t index, bool strip) {
-  std::string html = fmt::format(
-      "<figure>\n<div class=\"plot-head\"><h2>{}</h2><div class=\"legend\" id=\"legend{}\"></div>"
-      "<button class=\"whole\" type=\"button\">Whole run</button></div>\n",
-      escaped(plot.title), index);
+  std::string html =
+      fmt::format("<figure>\n<div class=\"plot-head\"><h2>{}</h2><div class=\"legend\" id=\"legend{}\"></div></div>\n",
+                  escaped(plot.title), index);
   if (!plot.note.empty()) html += fmt::format("<p class=\"note\">{}</p>\n", escaped(plot.note));
   html += fmt::format(
-      "<p class=\"unit\">{}</p>\n<div class=\"plot\" id=\"plot{}\" role=\"img\" tabindex=\"0\" aria-label=\"{}\" "
+      "<div class=\"unit\"><span>{}</span><span class=\"at\"></span><button class=\"whole\" type=\"button\">Whole "
+      "run</button></div>\n<div "
+      "class=\"plot\" id=\"plot{}\" role=\"img\" tabindex=\"0\" aria-label=\"{}\" "
       "aria-describedby=\"hint\"></div>\n",
       escaped(plot.y_label), index, escaped(plot.title));
   if (strip)

@@ -7,7 +7,7 @@
   const PRINT_WIDTH = 680;  // px: the text width of a sheet of A4
 
   const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const short = v => v === null || !isFinite(v) ? '–' : Math.abs(v) >= 1000 ? v.toFixed(0) : String(+v.toPrecision(4));
+  const short = v => String(+v.toPrecision(4));
   const seconds = v => v.toFixed(3) + ' s';
 
   function rows(plot) {
@@ -36,10 +36,21 @@
     return plot.title + '. ' + parts.join('; ') + '.';
   }
 
+  // As many decimals as tell a ten-thousandth of the largest value of the plot.
+  function value_format(table) {
+    let largest = 0;
+    for (const row of table)
+      for (let i = 1; i < row.length; ++i) largest = Math.max(largest, Math.abs(row[i]));
+    const decimals = Math.min(Math.max(4 - Math.ceil(Math.log10(largest || 1)), 0), 12);
+    return v => (+v.toFixed(decimals) || 0).toFixed(decimals);
+  }
+
+  // The names of the lines, with their values where the pointer is; the time stands beside the unit.
   function legend(d) {
+    d.dygraph.graphDiv.parentNode.previousElementSibling.querySelector('.at').textContent =
+        d.x === undefined ? '' : 'at ' + d.xHTML;
     return d.series.map(s => `<span class="key"><i style="border-color:${s.color}"></i>${s.labelHTML}` +
-        `<b>${d.x === undefined ? '' : s.yHTML === undefined ? '–' : s.yHTML}</b></span>`).join('') +
-        (d.x === undefined ? '' : `<span class="quiet">at ${d.xHTML}</span>`);
+        `<b>${d.x === undefined ? '' : s.yHTML === undefined ? '–' : s.yHTML}</b></span>`).join('');
   }
 
   // Spans of frames that are not OK: [from, to, state] in seconds.
@@ -110,8 +121,8 @@
       legend: 'always', legendFormatter: legend, strokeWidth: 1.3, highlightCircleSize: 3, axisLabelFontSize: 12,
       xRangePad: 0, interactionModel: interaction(), showRangeSelector: first, rangeSelectorHeight: 28,
       axes: {
-        x: {valueFormatter: seconds, axisLabelFormatter: v => +v.toFixed(6) + (first ? ' s' : ''), pixelsPerLabel: 70},
-        y: {valueFormatter: short, axisLabelWidth: 44, pixelsPerLabel: 32}
+        x: {valueFormatter: seconds, axisLabelFormatter: v => +v.toFixed(6) + ' s', pixelsPerLabel: 70},
+        y: {valueFormatter: value_format(table), axisLabelWidth: 44, pixelsPerLabel: 32}
       },
       underlayCallback: (context, area, me) => paint(context, me, () => area.y, () => area.h,
           s => css(s === 2 ? '--shade-lost' : '--shade-uncertain')),
@@ -160,11 +171,15 @@
   // The window does not resize for paper.
   const open = [];
   addEventListener('beforeprint', () => {
-    graphs.forEach(p => { p.g.resize(PRINT_WIDTH, 190); });
-    recolour();
-    document.querySelectorAll('details.print:not([open])').forEach(d => { d.open = true; open.push(d); });
+    document.documentElement.classList.add('paper');  // the page is still dark at this moment, if it is
+    graphs.forEach((p, i) => {
+      p.g.updateOptions(look(p.count), true);
+      p.g.resize(PRINT_WIDTH, i === 0 ? 250 : 190);
+    });
+    document.querySelectorAll('details:not([open])').forEach(d => { d.open = true; open.push(d); });
   });
   addEventListener('afterprint', () => {
+    document.documentElement.classList.remove('paper');
     graphs.forEach(p => {
       p.g.graphDiv.parentNode.style.width = p.g.graphDiv.parentNode.style.height = '';
       p.g.resize();
