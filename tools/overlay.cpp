@@ -15,7 +15,8 @@ cv::Point fixed(const Eigen::Vector2d& p) {
 bool drawable(const Eigen::Vector2d& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < 1e5; }
 
 // Okabe-Ito, told apart by the colour-blind; BGR.
-const cv::Scalar kBlue(233, 180, 86), kOrange(0, 159, 230), kRed(0, 94, 213), kGreen(115, 158, 0), kWhite(255, 255, 255);
+const cv::Scalar kBlue(233, 180, 86), kOrange(0, 159, 230), kRed(0, 94, 213), kGreen(115, 158, 0),
+    kWhite(255, 255, 255);
 
 }  // namespace
 

@@ -32,9 +32,7 @@ struct ServoOptions {
   double latency_ms = -1, settle_s = -1;
 };
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 template <class Registry>
 void print_engines(const char* kind, const Registry& registry) {
@@ -94,8 +92,8 @@ class Album {
     const char* legend = "region (blue: followed), goal (ring), tip (cross)";
     if (!first_.empty()) result.push_back({fmt::format("{:.2f} s: {}", first_time_, legend), first_});
     if (!worst_.empty())
-      result.push_back({fmt::format("{:.2f} s: the worst moment, {:.1f} px from the goal", worst_time_, worst_residual_),
-                        worst_});
+      result.push_back(
+          {fmt::format("{:.2f} s: the worst moment, {:.1f} px from the goal", worst_time_, worst_residual_), worst_});
     return result;
   }
 
@@ -181,7 +179,8 @@ Command add_servo_command(CLI::App& program) {
   add_recording_options(*app, o.recorded);
   app->add_option("--depth-mm", o.recorded.depth_mm, "assumed distance of the region in recorded frames")
       ->check(CLI::Range(1.0, 10000.0));
-  app->add_option("--reference", o.reference, "CSV time_s,u_px,v_px: where the region truly is, to score recorded frames")
+  app->add_option("--reference", o.reference,
+                  "CSV time_s,u_px,v_px: where the region truly is, to score recorded frames")
       ->type_name("FILE");
   app->add_option("--tracker", o.tracker, "overrides the scene's tracker");
   app->add_option("--predictor", o.predictor, "overrides the scene's predictor");
@@ -191,9 +190,10 @@ Command add_servo_command(CLI::App& program) {
       ->check(CLI::Range(0.0, 1900.0));
   app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(CLI::Range(0.0, 1e4));
   app->add_flag("--list", o.run.list, "list the engines and exit");
-  app->footer("Examples:\n  heartservo servo scenes/pig_2007.yaml\n"
-              "  heartservo servo scenes/pig_2007.yaml --predictor hold --controller ibvs --json\n"
-              "  heartservo servo recorded/frames --roi 150,130,60,60 --frame-rate-hz 25 --depth-mm 45");
+  app->footer(
+      "Examples:\n  heartservo servo scenes/pig_2007.yaml\n"
+      "  heartservo servo scenes/pig_2007.yaml --predictor hold --controller ibvs --json\n"
+      "  heartservo servo recorded/frames --roi 150,130,60,60 --frame-rate-hz 25 --depth-mm 45");
   return {app, [options] { return run_servo(*options); }};
 }
 

@@ -15,18 +15,27 @@ std::vector<ReportPlot> metric_plots() {
     return std::vector<ReportSeries>{
         {who + " x", group + "/x_m"}, {who + " y", group + "/y_m"}, {who + " z", group + "/z_m"}};
   };
-  return {{"Motion of the heart and what is left of it", "mm",
-           {{"heart x", "motion/x_m"}, {"heart y", "motion/y_m"}, {"heart z", "motion/z_m"}, {"residual", "residual/norm_m"}},
-           1e3, "Motion of the goal about its mean; distance of the true tip from the true goal."},
-          {"Residual by axis", "mm", axes("residual", "residual"), 1e3},
-          {"Commanded velocity", "mm/s", {{"x", "command/x_m_s"}, {"y", "command/y_m_s"}, {"z", "command/z_m_s"}}, 1e3}};
+  return {
+      {"Motion of the heart and what is left of it",
+       "mm",
+       {{"heart x", "motion/x_m"},
+        {"heart y", "motion/y_m"},
+        {"heart z", "motion/z_m"},
+        {"residual", "residual/norm_m"}},
+       1e3,
+       "Motion of the goal about its mean; distance of the true tip from the true goal."},
+      {"Residual by axis", "mm", axes("residual", "residual"), 1e3},
+      {"Commanded velocity", "mm/s", {{"x", "command/x_m_s"}, {"y", "command/y_m_s"}, {"z", "command/z_m_s"}}, 1e3}};
 }
 
 std::vector<ReportPlot> pixel_plots() {
-  return {{"Motion of the goal in the picture and the tip's distance from it", "px",
-           {{"goal u", "motion/u_px"}, {"goal v", "motion/v_px"}, {"residual", "residual/norm_px"}}, 1,
-           "Motion of the goal about its mean, as far as the reference knows it."},
-          {"Commanded velocity", "mm/s", {{"x", "command/x_m_s"}, {"y", "command/y_m_s"}, {"z", "command/z_m_s"}}, 1e3}};
+  return {
+      {"Motion of the goal in the picture and the tip's distance from it",
+       "px",
+       {{"goal u", "motion/u_px"}, {"goal v", "motion/v_px"}, {"residual", "residual/norm_px"}},
+       1,
+       "Motion of the goal about its mean, as far as the reference knows it."},
+      {"Commanded velocity", "mm/s", {{"x", "command/x_m_s"}, {"y", "command/y_m_s"}, {"z", "command/z_m_s"}}, 1e3}};
 }
 
 ReportTable residual_rows(const json& j) {
@@ -47,18 +56,26 @@ ReportTable residual_rows(const json& j) {
 ReportTable run_rows(const json& j) {
   const json &t = j["tracking"], &c = j["commands"], &time = j["timing"];
   const auto text = [&](const char* key) { return j[key].get<std::string>(); };
-  return {"Run", {}, {{"frames", fmt::format("{} at {} Hz", j["frames"].get<int>(), number(j["frame_rate_hz"], 0))},
-                      {"latency, ms", number(j["latency_ms"], 1)},
-                      {"seed", std::to_string(j["seed"].get<int>())},
-                      {"tracker", text("tracker")}, {"estimator", text("estimator")}, {"predictor", text("predictor")},
-                      {"controller", text("controller")}, {"robot", text("robot")}, {"camera", text("camera")},
-                      {"lost frames", std::to_string(t["lost_frames"].get<int>())},
-                      {"uncertain frames", std::to_string(t["uncertain_frames"].get<int>())},
-                      {"corner error, px", t["error_px"].is_null() ? "-" : number(t["error_px"]["mean"], 3)},
-                      {"fastest command, mm/s", number(c["max_speed_mm_s"], 1)},
-                      {"tracking time p50 / p99, ms", number(time["track_ms"]["p50"], 3) + " / " + number(time["track_ms"]["p99"], 3)},
-                      {"chain time p50 / p99, ms", number(time["chain_ms"]["p50"], 3) + " / " + number(time["chain_ms"]["p99"], 3)},
-                      {"times real time", number(time["real_time_factor"], 2)}}, ""};
+  return {
+      "Run",
+      {},
+      {{"frames", fmt::format("{} at {} Hz", j["frames"].get<int>(), number(j["frame_rate_hz"], 0))},
+       {"latency, ms", number(j["latency_ms"], 1)},
+       {"seed", std::to_string(j["seed"].get<int>())},
+       {"tracker", text("tracker")},
+       {"estimator", text("estimator")},
+       {"predictor", text("predictor")},
+       {"controller", text("controller")},
+       {"robot", text("robot")},
+       {"camera", text("camera")},
+       {"lost frames", std::to_string(t["lost_frames"].get<int>())},
+       {"uncertain frames", std::to_string(t["uncertain_frames"].get<int>())},
+       {"corner error, px", t["error_px"].is_null() ? "-" : number(t["error_px"]["mean"], 3)},
+       {"fastest command, mm/s", number(c["max_speed_mm_s"], 1)},
+       {"tracking time p50 / p99, ms", number(time["track_ms"]["p50"], 3) + " / " + number(time["track_ms"]["p99"], 3)},
+       {"chain time p50 / p99, ms", number(time["chain_ms"]["p50"], 3) + " / " + number(time["chain_ms"]["p99"], 3)},
+       {"times real time", number(time["real_time_factor"], 2)}},
+      ""};
 }
 
 }  // namespace
@@ -71,8 +88,9 @@ Report servo_report(const json& j, const TimeTable& table, std::vector<ReportPic
   const std::string left = metric ? number(j["residual"]["rms_mm"], 2) : number(j["residual_px"]["rms"], 1);
   const std::string unit = metric ? "mm" : "px";
   const std::string motion = metric ? number(j["motion"]["rms_mm"], 2) : number(j["motion_px"]["rms"], 1);
-  report.headline = fmt::format("The tip stands still to {} {} RMS on a heart that moves {} {} RMS: {} % of the motion is cancelled.",
-                                left, unit, motion, unit, number(j["reduction_percent"], 1));
+  report.headline =
+      fmt::format("The tip stands still to {} {} RMS on a heart that moves {} {} RMS: {} % of the motion is cancelled.",
+                  left, unit, motion, unit, number(j["reduction_percent"], 1));
   report.headline_number = left;
   report.headline_unit = unit + " RMS residual";
   if (!metric)
@@ -84,7 +102,8 @@ Report servo_report(const json& j, const TimeTable& table, std::vector<ReportPic
   if (j["interrupted"].get<bool>()) report.notices.push_back("Ended early by Ctrl-C.");
   report.plots = metric ? metric_plots() : pixel_plots();
   report.plots.push_back({"Tracking quality", "", {{"target", "track/quality"}, {"tool marker", "marker/quality"}}, 1});
-  report.plots.push_back({"Computing time", "ms", {{"trackers", "timing/track_ms"}, {"whole chain", "timing/chain_ms"}}, 1});
+  report.plots.push_back(
+      {"Computing time", "ms", {{"trackers", "timing/track_ms"}, {"whole chain", "timing/chain_ms"}}, 1});
   report.pictures = std::move(pictures);
   report.tables = {residual_rows(j), run_rows(j)};
   report.table = &table;

@@ -85,11 +85,10 @@ std::string number(const json& value, int decimals) {
 
 std::string residual_table(const json& j) {
   const bool metric = !j["residual"].is_null();
-  std::string t = fmt::format("{}: {} frames, {} scored after {} s, {} + {} + {}, latency {} ms\n\n",
-                              j["scene"].get<std::string>(), j["frames"].get<int>(), j["scored_frames"].get<int>(),
-                              number(j["settle_s"], 1), j["tracker"].get<std::string>(),
-                              j["predictor"].get<std::string>(), j["controller"].get<std::string>(),
-                              number(j["latency_ms"], 0));
+  std::string t = fmt::format(
+      "{}: {} frames, {} scored after {} s, {} + {} + {}, latency {} ms\n\n", j["scene"].get<std::string>(),
+      j["frames"].get<int>(), j["scored_frames"].get<int>(), number(j["settle_s"], 1), j["tracker"].get<std::string>(),
+      j["predictor"].get<std::string>(), j["controller"].get<std::string>(), number(j["latency_ms"], 0));
   const auto row = [&](const std::string& name, const std::vector<std::string>& cells) {
     t += fmt::format("{:<22}", name);
     for (const auto& cell : cells) t += fmt::format("{:>10}", cell);
@@ -99,7 +98,8 @@ std::string residual_table(const json& j) {
     const json &motion = j["motion"], &residual = j["residual"], &p2p = motion["peak_to_peak_mm"],
                &axis = residual["axis_rms_mm"];
     row("mm", {"3D RMS", "95 %", "max", "x", "y", "z"});
-    row("heart motion (p-p)", {number(motion["rms_mm"], 3), "", "", number(p2p["x"], 3), number(p2p["y"], 3), number(p2p["z"], 3)});
+    row("heart motion (p-p)",
+        {number(motion["rms_mm"], 3), "", "", number(p2p["x"], 3), number(p2p["y"], 3), number(p2p["z"], 3)});
     row("residual (RMS)", {number(residual["rms_mm"], 3), number(residual["p95_mm"], 3), number(residual["max_mm"], 3),
                            number(axis["x"], 3), number(axis["y"], 3), number(axis["z"], 3)});
   }
@@ -108,9 +108,9 @@ std::string residual_table(const json& j) {
   row("motion", {number(j["motion_px"]["rms"], 2)});
   row("residual", {number(px["rms"], 2), number(px["p95"], 2), number(px["max"], 2)});
   t += fmt::format("{:<22}{:>10}\n", "scored against", px["reference"].get<std::string>());
-  t += fmt::format("\nmotion cancelled {} %, lost frames {}, uncertain {}, found again {}\n", number(j["reduction_percent"], 1),
-                   j["tracking"]["lost_frames"].get<int>(), j["tracking"]["uncertain_frames"].get<int>(),
-                   j["tracking"]["relocks"].get<int>());
+  t += fmt::format("\nmotion cancelled {} %, lost frames {}, uncertain {}, found again {}\n",
+                   number(j["reduction_percent"], 1), j["tracking"]["lost_frames"].get<int>(),
+                   j["tracking"]["uncertain_frames"].get<int>(), j["tracking"]["relocks"].get<int>());
   t += fmt::format("chain {} ms (p50), {} ms (p99); {} x real time\n", number(j["timing"]["chain_ms"]["p50"], 3),
                    number(j["timing"]["chain_ms"]["p99"], 3), number(j["timing"]["real_time_factor"], 1));
   if (!j["stop_reason"].is_null()) t += "SAFETY STOP: " + j["stop_reason"].get<std::string>() + "\n";

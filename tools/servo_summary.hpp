@@ -13,9 +13,9 @@ namespace heartservo::tools {
 
 /// What a run is known by, beside its score.
 struct ServoRunFacts {
-  std::string scene;       ///< "pig_2007", or the source of a recorded run
-  std::string reference;   ///< of the pixel residual
-  std::string camera;      ///< calibration file or "assumed pinhole"
+  std::string scene;      ///< "pig_2007", or the source of a recorded run
+  std::string reference;  ///< of the pixel residual
+  std::string camera;     ///< calibration file or "assumed pinhole"
   double frame_rate_hz = 0;
   double real_time_factor = 0;
   bool interrupted = false;

@@ -7,7 +7,7 @@ namespace heartservo::servo {
 
 struct ControlOptions {
   double gain = 9;               ///< 1/s, ibvs
-  double gain_feedforward = 30;  ///< 1/s, ibvs_feedforward
+  double gain_feedforward = 100;  ///< 1/s, ibvs_feedforward
 
   void fields(FieldVisitor& v) {
     v.field({"gain", "1/s", "ibvs: proportional gain; above about 1 / (2 x total delay) the loop rings", 0.1, 500},

@@ -6,7 +6,7 @@
 namespace heartservo::servo {
 
 struct PredictorOptions {
-  double acceleration_density = 1.0;  ///< m^2/s^3
+  double acceleration_density = 10;  ///< m^2/s^3
   double smallest_sigma_m = 1e-5;     ///< m
 
   void fields(FieldVisitor& v) {

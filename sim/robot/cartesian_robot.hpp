@@ -17,7 +17,7 @@ namespace heartservo::sim {
 struct RobotOptions {
   std::string type = "cartesian";
   double bandwidth_hz = 25;
-  double damping = 0.9;
+  double damping = 0.7;
   double max_speed = 0.4;
   double max_acceleration = 20;
   double encoder_noise_m = 2e-6;

@@ -35,7 +35,8 @@ class Table {
   virtual HandPicked picked() const = 0;
   virtual Eigen::Vector3d marker_to_tip() const = 0;  ///< m, camera frame; the tool does not turn
   virtual Eigen::Vector3d offset() const = 0;         ///< surgeon's offset in the target frame, m
-  virtual double region_side_m() const = 0;           ///< of the square region followed
+  virtual double region_side_m() const = 0;           ///< of the square region followed; 0: unknown
+  virtual double marker_side_m() const = 0;
   /// For the score. Call it after the loop's step, with what that step recorded.
   virtual servo::TruthSample truth(const servo::LoopRecord& record) const = 0;
   virtual std::string reference() const = 0;  ///< what the pixel residual is scored against: truth, tracked or a file

@@ -28,7 +28,7 @@ struct ReportPlot {
   std::string y_label;  ///< with the unit people read: "mm"
   std::vector<ReportSeries> series;
   double scale = 1;                  ///< from the table's unit to the plot's (m to mm: 1000)
-  std::string note;                  ///< one line below the title, "" for none
+  std::string note = "";             ///< one line below the title, "" for none
   const TimeTable* table = nullptr;  ///< nullptr: the report's
 };
 

@@ -1,0 +1,202 @@
+// heartservo track: follows a region with one or several trackers side by side.
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "servo/loop/loop_record.hpp"
+#include "sim/table/table.hpp"
+#include "tools/command.hpp"
+#include "tools/corner_truth.hpp"
+#include "tools/interrupt.hpp"
+#include "tools/overlay.hpp"
+#include "tools/progress.hpp"
+#include "tools/report/report.hpp"
+#include "tools/run_folder.hpp"
+#include "tools/servo_summary.hpp"
+#include "tools/track_run.hpp"
+#include "tools/trajectory.hpp"
+#include "tracking/landmark/registry.hpp"
+#include "tracking/landmark/square_refinement.hpp"
+#include "tracking/planar/registry.hpp"
+#include "tracking/settings/errors.hpp"
+
+namespace heartservo::tools {
+
+namespace {
+
+struct TrackOptions {
+  RunOptions run;
+  RecordedOptions recorded;
+  std::vector<std::string> trackers;
+  std::vector<double> corners;
+  double square_mm = 0;
+  std::string truth;
+};
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+int list_trackers() {
+  for (const auto& engine : tracking::trackers().engines()) fmt::print("{:<20}{}\n", engine.name, engine.summary);
+  return DONE;
+}
+
+sim::Scene configure(const TrackOptions& o) {
+  sim::Scene scene = scene_for(o.run, o.recorded);
+  scene.show_tool = false;
+  if (scene.settle_s >= scene.duration_s) scene.settle_s = 0;  // nothing is scored by time here
+  sim::require_valid(scene, o.run.source);
+  if (!scene.is_recorded() && (!o.corners.empty() || !o.truth.empty()))
+    throw ConfigError("--corners and --truth are for recorded frames; a simulated scene knows both");
+  if (!o.corners.empty() && !o.recorded.roi.empty()) throw ConfigError("give --roi or --corners, not both");
+  if (o.square_mm > 0 && scene.is_recorded() && scene.camera.calibration.empty())
+    throw ConfigError("--square-mm needs --camera FILE: without a calibration there are no millimetres");
+  return scene;
+}
+
+std::unique_ptr<tracking::TargetEstimator> estimator_for(const TrackOptions& o, const sim::Table& table) {
+  tracking::EstimatorOptions options;
+  options.camera = table.camera();
+  options.side_m = o.square_mm > 0 ? 1e-3 * o.square_mm : table.region_side_m();
+  return options.side_m > 0 ? tracking::estimators().make("landmark_refined", options) : nullptr;
+}
+
+tracking::Quad region_for(const TrackOptions& o, const sim::HandPicked& picked) {
+  if (o.corners.empty()) return picked.target;
+  tracking::Quad quad;
+  for (std::size_t i = 0; i < 4; ++i) quad[i] = {o.corners[2 * i], o.corners[2 * i + 1]};
+  return quad;
+}
+
+Report track_report(const nlohmann::json& summary, const std::vector<TrackLane>& lanes,
+                    std::vector<ReportPicture> pictures, const std::string& config) {
+  Report report;
+  report.title = "track " + summary["source"].get<std::string>();
+  const auto& first = summary["trackers"][0];
+  const int lost = first["lost_frames"], frames = summary["frames"];
+  report.headline = fmt::format("{} followed the region in {} of {} frames.", first["name"].get<std::string>(),
+                                frames - lost, frames);
+  report.headline_number = first["error_px"].is_null() ? std::to_string(lost) : number(first["error_px"]["mean"], 3);
+  report.headline_unit = first["error_px"].is_null() ? "lost frames" : "px mean corner error";
+  ReportTable table{"Trackers", {"tracker", "lost", "uncertain", "error px", "ms p50", "ms p99"}, {}, ""};
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    const auto& lane = summary["trackers"][i];
+    table.rows.push_back({lanes[i].name(), std::to_string(lane["lost_frames"].get<int>()),
+                          std::to_string(lane["uncertain_frames"].get<int>()),
+                          lane["error_px"].is_null() ? "-" : number(lane["error_px"]["mean"], 3),
+                          number(lane["ms"]["p50"], 3), number(lane["ms"]["p99"], 3)});
+    report.plots.push_back({"Displacement, " + lanes[i].name(),
+                            "px",
+                            {{"horizontal", "displacement/u_px"}, {"vertical", "displacement/v_px"}},
+                            1,
+                            "",
+                            &lanes[i].table()});
+    report.plots.push_back(
+        {"Quality, " + lanes[i].name(), "", {{"quality", "track/quality"}}, 1, "", &lanes[i].table()});
+  }
+  report.tables = {table};
+  report.pictures = std::move(pictures);
+  report.table = &lanes.front().table();
+  report.state_column = "track/state";
+  report.config_yaml = config;
+  report.summary = summary;
+  return report;
+}
+
+int run_track(const TrackOptions& o) {
+  if (o.run.list) return list_trackers();
+  const sim::Scene scene = configure(o);
+  std::vector<std::string> names = o.trackers.empty() ? std::vector<std::string>{scene.engines.tracker} : o.trackers;
+  if (names == std::vector<std::string>{"all"}) names = tracking::trackers().names();
+  for (const auto& name : names) tracking::trackers().require(name);
+  std::optional<CornerTruth> truth_file;
+  if (!o.truth.empty()) truth_file.emplace(o.truth);
+  const auto table = sim::make_table(scene);
+  const std::size_t expected = table->frames().frame_count().value_or(0);
+
+  // Without a calibration the homography stays on the pixels: a guessed lens would only add its own error.
+  const bool calibrated = !scene.is_recorded() || !scene.camera.calibration.empty();
+  const tracking::Camera lens = calibrated ? table->camera() : tracking::Camera{};
+  std::vector<TrackLane> lanes;
+  for (const auto& name : names)
+    lanes.emplace_back(name, tracking::trackers().make(name, lens, scene.tracking), estimator_for(o, *table),
+                       std::max<std::size_t>(expected, 256));
+  tracking::Frame frame;
+  if (!table->frames().next(frame)) throw InputError(o.run.source + ": there is no frame");
+  const auto picked = table->picked();
+  tracking::Quad region = region_for(o, picked);
+  if (picked.target_edge_ratio > 0)
+    region = tracking::refine_square(frame.grey, lens, region, picked.target_edge_ratio).corners;
+  for (auto& lane : lanes)
+    if (const std::string why = lane.start(frame, region); !why.empty())
+      throw ConfigError(fmt::format("{}: the region cannot be tracked by {}: {}", o.run.source, lane.name(), why));
+
+  RunFolder folder(run_path(o.run, "track"));
+  std::vector<ReportPicture> pictures;
+  std::size_t count = 0;
+  bool interrupted = false;
+  {
+    const Interrupt interrupt;
+    Progress progress("track " + stem_of(o.run.source), expected, o.run.quiet);
+    do {
+      servo::LoopRecord record;
+      record.frame = frame;
+      const auto truth = truth_file ? truth_file->at(frame.time_s) : table->truth(record).corners_px;
+      cv::Mat canvas;
+      const bool show = frame.status == tracking::FrameStatus::OK && (count == 0 || count == expected / 2);
+      if (show) canvas = canvas_of(frame);
+      for (auto& lane : lanes) {
+        const tracking::Track& track = lane.follow(frame, truth ? &*truth : nullptr, now_s);
+        if (show) draw_region(canvas, track);
+      }
+      if (show) pictures.push_back({fmt::format("{:.2f} s", frame.time_s), canvas});
+      progress.update(++count);
+    } while (!(interrupted = interrupt.requested()) && table->frames().next(frame));
+  }
+
+  nlohmann::json summary{{"command", "track"},
+                         {"version", HEARTSERVO_VERSION},
+                         {"source", o.run.source},
+                         {"frames", count},
+                         {"interrupted", interrupted}};
+  for (const auto& lane : lanes) {
+    summary["trackers"].push_back(lane.summary());
+    lane.table().write_csv(folder.file(lanes.size() == 1 ? "frames.csv" : "frames_" + lane.name() + ".csv"));
+    if (lane.table().has("pose/qw")) write_tum(lane.table(), folder.file("trajectory_" + lane.name() + ".tum"));
+  }
+  if (lanes.size() > 1) lanes.front().table().write_csv(folder.file("frames.csv"));
+  const std::string config = config_text(scene, "track");
+  folder.write("config.yaml", config);
+  folder.write("summary.json", summary.dump(2) + "\n");
+  write_report(track_report(summary, lanes, pictures, config), folder.file("report.html"));
+  folder.finish();
+  if (o.run.json)
+    fmt::print("{}\n", summary.dump(2));
+  else if (!o.run.quiet)
+    fmt::print("{}\nreport: {}\n", track_table(summary), folder.file("report.html").string());
+  return interrupted ? INTERRUPTED : DONE;
+}
+
+}  // namespace
+
+Command add_track_command(CLI::App& program) {
+  auto options = std::make_shared<TrackOptions>();
+  TrackOptions& o = *options;
+  CLI::App* app = program.add_subcommand("track", "follow a region; several trackers side by side");
+  add_run_options(*app, o.run, "image folder, printf pattern, video or scene (.yaml)");
+  add_recording_options(*app, o.recorded);
+  app->add_option("--tracker", o.trackers, "trackers, separated by commas, or 'all'")->delimiter(',');
+  app->add_option("--corners", o.corners, "region as x1,y1,...,x4,y4 in px, clockwise from top left")
+      ->delimiter(',')
+      ->expected(8);
+  app->add_option("--square-mm", o.square_mm, "side of the square landmark: metric pose, with --camera")
+      ->check(CLI::Range(0.1, 1000.0));
+  app->add_option("--truth", o.truth, "CSV of the true corners, as 'heartservo render' writes it")->type_name("FILE");
+  app->add_flag("--list", o.run.list, "list the trackers and exit");
+  app->footer(
+      "Examples:\n  heartservo track frames/ --roi 150,130,60,60\n"
+      "  heartservo track scenes/pig_2007.yaml --tracker all --frames 250\n"
+      "  heartservo track rendered/frames --truth rendered/truth.csv --corners 232,223,286,224,285,278,231,277");
+  return {app, [options] { return run_track(*options); }};
+}
+
+}  // namespace heartservo::tools
