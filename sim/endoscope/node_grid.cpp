@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/endoscope/target_clones.hpp"
+#include "tracking/settings/target_clones.hpp"
 
 namespace heartservo::sim {
 namespace {
@@ -25,13 +25,13 @@ struct CubicWeights {
 };
 constexpr CubicWeights kWeights;
 
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void combine_rows(const float* nodes, int columns, float w0, float w1, float w2, float w3, float* out) {
   const float *r0 = nodes, *r1 = r0 + columns, *r2 = r1 + columns, *r3 = r2 + columns;
   for (int i = 0; i < columns; ++i) out[i] = w0 * r0[i] + w1 * r1[i] + w2 * r2[i] + w3 * r3[i];
 }
 
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void spread_columns(const float* nodes, int cells, float* __restrict out) {
   for (int i = 0; i < cells; ++i) {
     const float a = nodes[i], b = nodes[i + 1], c = nodes[i + 2], d = nodes[i + 3];

@@ -12,7 +12,7 @@ namespace heartservo::sim {
 /// of the picture has two nodes on each side.
 class NodeGrid {
  public:
-  static constexpr int kNodeStep = 8;
+  static constexpr int kNodeStep = 4;
 
   NodeGrid() = default;
   NodeGrid(int width, int height);

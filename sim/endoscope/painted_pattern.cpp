@@ -40,11 +40,11 @@ double mix(double a, double b, double t) { return a + t * (b - a); }
 
 double painted_pattern(std::uint32_t id, double x, double y) {
   const double rim = std::max(std::abs(x), std::abs(y));
-  const double value = 0.95 * turned(3 * id + 1, x, y, 3.3, 0.41) + 0.75 * turned(3 * id + 2, x, y, 7.9, 1.13) +
-                       0.45 * turned(3 * id + 3, x, y, 14.7, 2.02);
-  // Three paints: dark, middle, light, a third of the fully pressed levels mixed with the continuous value.
+  const double value = 0.9 * turned(3 * id + 1, x, y, 3.3, 0.41) + 0.75 * turned(3 * id + 2, x, y, 7.9, 1.13) +
+                       0.5 * turned(3 * id + 3, x, y, 14.7, 2.02);
+  // Three paints: dark, middle, light, mixed with the continuous value so that no area is flat.
   const double pressed = std::tanh(7 * (value - 0.28)) + std::tanh(7 * (value + 0.28));
-  const double paint = std::clamp(118 + 38 * pressed + 45 * value, 12.0, 238.0);
+  const double paint = std::clamp(105 + 18 * pressed + 62 * value, 12.0, 200.0);
   // Soft edges, wider than a texel: a hard one would snap to the texture's grid.
   const double framed = mix(paint, 25, step(rim - 0.7));
   return mix(framed, 195, step(rim - kFrameEdge));

@@ -15,8 +15,8 @@ struct PictureOptions {
   double light_distance_m = 0.055;
   double exposure = 1;
   double specular_grey = 420;
-  double specular_roughness = 0.085;
-  double vignetting = 0.35;
+  double specular_roughness = 0.12;
+  double vignetting = 0.2;
   double gain = 1;
   double bias_grey = 4;
   double noise_grey = 3;

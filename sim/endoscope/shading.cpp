@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "sim/endoscope/surface_nodes.hpp"
-#include "sim/endoscope/target_clones.hpp"
+#include "tracking/settings/target_clones.hpp"
 
 namespace heartservo::sim {
 namespace {
@@ -28,7 +28,7 @@ inline __attribute__((always_inline)) float gloss_of(std::uint32_t t) {
 
 }  // namespace
 
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void shade_row(const ShadingConstants& constants, const float* channels, int stride, int width, float* __restrict out) {
   const std::uint32_t* __restrict texels = constants.texels;
   const int size = constants.size;
@@ -57,7 +57,7 @@ void shade_row(const ShadingConstants& constants, const float* channels, int str
   }
 }
 
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void expose_row(const float* light, const float* noise, float gain, float bias, int width,
                 std::uint8_t* __restrict grey) {
   for (int i = 0; i < width; ++i) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/endoscope/target_clones.hpp"
+#include "tracking/settings/target_clones.hpp"
 
 namespace heartservo::sim {
 namespace {
 
 constexpr int kBatch = 64;       // nodes worked on together; everything stays in the first-level cache
-constexpr int kNewtonSteps = 5;  // from the tangent plane to far below a micrometre; the picture tests would tell
+constexpr int kNewtonSteps = 4;  // from the tangent plane to far below a micrometre; the picture tests would tell
 
 /// A batch of rays in the surface's local frame, origin + s (mx, my, 1), and the surface's points on them.
 struct Batch {
@@ -29,7 +29,7 @@ HEARTSERVO_INLINE void store(const SurfacePoint& p, int i, Batch& n) {
 }
 
 /// Rays into the local frame (R: rows of R_camera_local); first guess: where they meet the plane z = 0.
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void enter_rays(const double* rx, const double* ry, const double* R, Batch& n) {
   const double r[9] = {R[0], R[1], R[2], R[3], R[4], R[5], R[6], R[7], R[8]};
   const double ox = n.origin[0], oy = n.origin[1], oz = n.origin[2];
@@ -43,13 +43,13 @@ void enter_rays(const double* rx, const double* ry, const double* R, Batch& n) {
   }
 }
 
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void evaluate_tissue(const Tissue& tissue, Batch& n) {
   const Tissue t = tissue;
   for (int i = 0; i < n.count; ++i) store(tissue_point(t, n.a[i], n.b[i]), i, n);
 }
 
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void evaluate_plate(const Plate& plate, Batch& n) {
   const Plate laid = plate;
   for (int i = 0; i < n.count; ++i) {
@@ -60,7 +60,7 @@ void evaluate_plate(const Plate& plate, Batch& n) {
 }
 
 /// One step of Newton's method on "the surface's point lies on the ray", two equations in (a, b).
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void newton_step(Batch& n) {
   const double ox = n.origin[0], oy = n.origin[1], oz = n.origin[2];
   for (int i = 0; i < n.count; ++i) {
@@ -76,7 +76,7 @@ void newton_step(Batch& n) {
 
 /// Light of the lamp at `lamp` (local frame) on the surface, seen from the batch's origin. Inverse square law and
 /// cosine; the mirror slope is that of a bump whose normal halves the angle between lamp and camera.
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void light_batch(const Batch& n, const double* lamp, double reference2, const float* vignette, float* shade,
                  float* slope_a, float* slope_b) {
   const double ox = n.origin[0], oy = n.origin[1], oz = n.origin[2], lx = lamp[0], ly = lamp[1], lz = lamp[2];

@@ -33,13 +33,14 @@ cv::Mat fibres(const TextureOptions& options, double length, double width, cv::R
 }  // namespace
 
 cv::Mat smooth_noise(int size, double wavelength, cv::RNG& random) {
-  // Random values two to a wavelength, joined by cubic interpolation; the margin keeps the border out of sight.
-  const int coarse = std::max(4, cvCeil(2 * size / wavelength)) + 4;
+  // White noise, four samples to a wavelength, blurred and enlarged. Not by cv::warpAffine: it rounds positions to 1/32
+  // of a sample, which shows as a grid in the slopes.
+  constexpr double kBlur = 1.2;
+  const int coarse = std::max(8, cvCeil(4 * size / wavelength));
   cv::Mat noise(coarse, coarse, CV_32FC1), fine;
-  random.fill(noise, cv::RNG::NORMAL, 0, 1.4);
-  const double scale = static_cast<double>(coarse - 4) / size;
-  const cv::Matx23d to_coarse(scale, 0, 2, 0, scale, 2);
-  cv::warpAffine(noise, fine, to_coarse, cv::Size(size, size), cv::INTER_CUBIC | cv::WARP_INVERSE_MAP);
+  random.fill(noise, cv::RNG::NORMAL, 0, 2 * kBlur * std::sqrt(CV_PI));
+  cv::GaussianBlur(noise, noise, {}, kBlur, kBlur, cv::BORDER_REFLECT);
+  cv::resize(noise, fine, {size, size}, 0, 0, cv::INTER_CUBIC);
   return fine;
 }
 
@@ -51,15 +52,15 @@ TissueLayers paint_tissue(const TextureOptions& options, std::uint64_t seed) {
   const cv::Mat coarse_grain = fibres(options, 5 * mm, 0.45 * mm, random);
   const cv::Mat tone = smooth_noise(n, 9 * mm, random), blotch = smooth_noise(n, 2.4 * mm, random);
   const cv::Mat fat_field = smooth_noise(n, 16 * mm, random), fat_edge = smooth_noise(n, 3 * mm, random);
-  const cv::Mat lobules = smooth_noise(n, 0.9 * mm, random), bumps = smooth_noise(n, 2.2 * mm, random);
-  const cv::Mat ripples = smooth_noise(n, 0.5 * mm, random);
+  const cv::Mat lobules = smooth_noise(n, 0.9 * mm, random), bumps = smooth_noise(n, 4.5 * mm, random);
+  const cv::Mat ripples = smooth_noise(n, 1.8 * mm, random);
   const cv::Mat vessels = paint_vessels(n, 1e3 * mm, options.vessels, random);
   cv::Mat speckle(n, n, CV_32FC1), walls;
   random.fill(speckle, cv::RNG::UNIFORM, -1, 1);
   cv::GaussianBlur(vessels, walls, {}, 0.22 * mm);
 
   TissueLayers layers{cv::Mat(n, n, CV_32FC1), cv::Mat(n, n, CV_32FC1), cv::Mat(n, n, CV_32FC1)};
-  const float fat_from = static_cast<float>(1.5 - 0.7 * options.fat), contrast = static_cast<float>(options.contrast);
+  const float fat_from = static_cast<float>(1.4 - 0.75 * options.fat), contrast = static_cast<float>(options.contrast);
   const float relief = static_cast<float>(options.relief * 1e-6);
   for (int j = 0; j < n; ++j) {
     const float *g1 = fine_grain.ptr<float>(j), *g2 = coarse_grain.ptr<float>(j), *t = tone.ptr<float>(j);
@@ -75,10 +76,12 @@ TissueLayers paint_tissue(const TextureOptions& options, std::uint64_t seed) {
       const float tissue = 112 + contrast * (muscle + fat * (fatty - muscle) + 7 * sp[i] * (1 - 0.5f * fat));
       const float blood = 112 + contrast * (-58 + 30 * fat * (1 - ve[i]) + 3 * bl[i]);
       grey[i] = std::clamp(tissue + 0.9f * ve[i] * (blood - tissue), 4.f, 250.f);
-      height[i] = relief * (52 * bu[i] + 12 * lo[i] + 3.5f * ri[i] + 5 * g2[i] + 130 * wa[i]);
+      height[i] = relief * (520 * bu[i] + 5 * lo[i] + 60 * ri[i] + 3 * g2[i] + 150 * wa[i]);
       gloss[i] = 0.9f - 0.35f * fat;
     }
   }
+  // A wet film rounds the finest edges.
+  cv::GaussianBlur(layers.height, layers.height, {}, 0.1 * mm);
   return layers;
 }
 

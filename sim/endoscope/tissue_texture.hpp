@@ -32,7 +32,7 @@ struct TextureOptions {
 };
 
 /// Texel (row j, column i) of a size x size texture lies at a = (i - (size - 1) / 2) / density, b likewise by rows.
-/// Blurred so that a camera with 8 px or more per mm does not alias, symmetrically, so that edges stay where they are.
+/// Blurred so that a camera with about 10.8 px per mm does not alias, symmetrically, so that edges stay where they are.
 class TissueTexture {
  public:
   /// Procedural heart: muscle grain, fat, branching vessels, fine noise, wet relief; `landmarks` painted in. The same

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "sim/endoscope/target_clones.hpp"
+#include "tracking/settings/target_clones.hpp"
 
 namespace heartservo::sim {
 
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void shade_shaft(const ShaftConstants& constants, const float* x, const float* y, int count, float* __restrict cover,
                  float* __restrict grey) {
   const ShaftConstants k = constants;
@@ -44,7 +44,7 @@ void shade_shaft(const ShaftConstants& constants, const float* x, const float* y
   }
 }
 
-HEARTSERVO_TARGET_CLONES
+HEARTSERVO_SIMD
 void shade_marker(const MarkerConstants& constants, const float* x, const float* y, int count, float* __restrict cover,
                   float* __restrict grey) {
   const MarkerConstants k = constants;

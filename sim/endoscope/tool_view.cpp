@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kNearest_m = 0.008;         // the shaft is drawn up to this distance from the camera
 constexpr double kReferenceDepth_m = 0.055;  // light falls off from here
-constexpr std::uint32_t kMarkerId = 1000;    // no landmark has this pattern
 
 /// Pattern and cover of the marker with a free margin, blurred alike.
 std::vector<float> paint_marker() {
@@ -26,7 +25,7 @@ std::vector<float> paint_marker() {
     for (int i = 0; i < kMarkerTexels; ++i) {
       const double x = (i - (kMarkerTexels - 1) / 2.0) / kMarkerScale,
                    y = (j - (kMarkerTexels - 1) / 2.0) / kMarkerScale;
-      grey.at<float>(j, i) = static_cast<float>(painted_pattern(kMarkerId, x, y));
+      grey.at<float>(j, i) = static_cast<float>(painted_pattern(kMarkerPattern, x, y));
       // Texels on the outline are covered in part.
       auto inside = [](double c) { return std::clamp((1 - std::abs(c)) * kMarkerScale + 0.5, 0.0, 1.0); };
       cover.at<float>(j, i) = static_cast<float>(inside(x) * inside(y));
@@ -136,7 +135,7 @@ void ToolView::paint_row(int v, float* cover, float* grey, float* work) const {
   const double per_half = 2 / options_.marker_side_m;
   shade_marker(
       {marker_.data(), static_cast<float>(centre.z() * per_half), static_cast<float>(centre.x() * per_half),
-       static_cast<float>(centre.y() * per_half), static_cast<float>(options_.brightness * std::min(fall_off, 1.6))},
+       static_cast<float>(centre.y() * per_half), static_cast<float>(options_.brightness * std::min(fall_off, 1.2))},
       x, y, last - first, cover, grey);
 }
 

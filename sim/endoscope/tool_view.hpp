@@ -2,6 +2,7 @@
 // The tool as the endoscope sees it: a tapering metal shaft with a painted square marker, drawn into any grey picture.
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 #include "tracking/settings/fields.hpp"
 
 namespace heartservo::sim {
+
+/// The marker's painted_pattern(); no landmark has it.
+inline constexpr std::uint32_t kMarkerPattern = 1000;
 
 struct ToolOptions {
   double radius_m = 0.0013;

@@ -17,13 +17,14 @@ struct Vessel {
 
 cv::Point fixed_point(const cv::Point2d& p) { return {cvRound(p.x * (1 << kShift)), cvRound(p.y * (1 << kShift))}; }
 
-/// One vessel down to its end, with its branches. A wandering direction with memory bends it like a real one.
+/// One vessel down to its end, with its branches. The direction wanders, with memory, about the first one.
 void draw(cv::Mat& mask, Vessel v, double texels_per_m, int depth, cv::RNG& random) {
   const double step = 0.4e-3 * texels_per_m, thinnest = 0.07e-3 * texels_per_m;
   const double taper = (v.radius - thinnest) / v.length_left * 0.8;
+  const double heading = v.direction;
   double bend = 0, until_branch = random.uniform(4e-3, 9e-3) * texels_per_m;
   for (; v.length_left > 0 && v.radius > thinnest; v.length_left -= step) {
-    bend = 0.85 * bend + random.gaussian(0.07);
+    bend = 0.85 * bend + random.gaussian(0.07) - 0.03 * (v.direction - heading);
     v.direction += bend;
     const cv::Point2d next = v.at + step * cv::Point2d(std::cos(v.direction), std::sin(v.direction));
     cv::line(mask, fixed_point(v.at), fixed_point(next), 255, std::max(1, cvRound(2 * v.radius)), cv::LINE_AA, kShift);

@@ -65,10 +65,10 @@ double PhaseClock::phase(double t) const {
   const double since = t - *(next - 1);
   if (since <= fixed_s_) return since / nominal_s_;
   const double stretched = *next - *(next - 1) - fixed_s_;
-  // The rate after the fixed part is (1 - c window(u)) / nominal. The window's ramps take half the time each, less in
-  // very long cycles, so that c stays below 0.95 and the phase never stands still or runs backwards.
+  // The rate after the fixed part is (1 - c window(u)) / nominal. The window's ramps take a quarter of the time
+  // each, less in very long cycles, so that c stays below 0.95 and the phase never stands still or runs backwards.
   const double missing = 1 - (nominal_s_ - fixed_s_) / stretched;
-  const double ramp = std::min(0.5, 1 - missing / 0.95);
+  const double ramp = std::min(0.25, 1 - missing / 0.95);
   const double c = missing / (1 - ramp);
   const double u = (since - fixed_s_) / stretched;
   const double phase = (fixed_s_ + stretched * (u - c * window_integral(u, ramp))) / nominal_s_;

@@ -18,7 +18,7 @@ namespace heartservo::sim {
 struct HeartSurfaceOptions {
   Eigen::Vector3d anchor_m{0, 0, 0.055};
   double radius_m = 0.05;
-  double slope_limit = 0.6;
+  double slope_limit = 0.5;
   double strain = 0.05;
   double wavelength_m = 0.028;
   double bulge_m = 0.0004;
