@@ -7,6 +7,7 @@
 #include <visp3/visual_features/vpFeaturePoint.h>
 #include <visp3/vs/vpServo.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "servo/control/registry.hpp"
@@ -17,10 +18,9 @@ namespace {
 
 class Ibvs final : public ControlLaw {
  public:
-  Ibvs(double gain, bool feed_forward) : feed_forward_(feed_forward) {
+  Ibvs(double gain, bool feed_forward) : gain_(gain), feed_forward_(feed_forward) {
     servo_.setServo(vpServo::EYETOHAND_L_cVe_eJe);
     servo_.setInteractionMatrixType(vpServo::CURRENT);
-    servo_.setLambda(gain);
     point_.buildFrom(0, 0, 1);
     point_goal_.buildFrom(0, 0, 1);
     depth_.buildFrom(0, 0, 1, 0);
@@ -43,6 +43,8 @@ class Ibvs final : public ControlLaw {
     point_.buildFrom(x, y, tip.z());
     depth_.buildFrom(x, y, tip.z(), std::log(tip.z() / goal.z()));
     point_goal_.buildFrom(goal.x() / goal.z(), goal.y() / goal.z(), goal.z());
+    // One period cannot undo more than the whole error: a slow camera takes the gain down.
+    servo_.setLambda(std::min(gain_, 1 / state.period_s));
     try {
       const vpColVector v = servo_.computeControlLaw();
       const Eigen::Vector3d proportional(v[0], v[1], v[2]);
@@ -53,6 +55,7 @@ class Ibvs final : public ControlLaw {
   }
 
  private:
+  double gain_;
   bool feed_forward_;
   vpServo servo_;
   vpFeaturePoint point_, point_goal_;

@@ -6,7 +6,7 @@
 namespace heartservo::servo {
 
 struct ControlOptions {
-  double gain = 9;               ///< 1/s, ibvs
+  double gain = 9;                ///< 1/s, ibvs
   double gain_feedforward = 100;  ///< 1/s, ibvs_feedforward
 
   void fields(FieldVisitor& v) {

@@ -7,12 +7,16 @@ namespace heartservo::servo {
 
 struct PredictorOptions {
   double acceleration_density = 10;  ///< m^2/s^3
-  double smallest_sigma_m = 1e-5;     ///< m
+  double jerk_density = 100;         ///< m^2/s^5
+  double smallest_sigma_m = 1e-5;    ///< m
 
   void fields(FieldVisitor& v) {
     v.field({"acceleration_density", "m^2/s^3",
              "constant_velocity: spectral density of the acceleration taken as white", 1e-6, 1e6},
             acceleration_density);
+    v.field(
+        {"jerk_density", "m^2/s^5", "constant_acceleration: spectral density of the jerk taken as white", 1e-6, 1e9},
+        jerk_density);
     v.field({"smallest_sigma_m", "m", "a measured position is never believed better than this", 0, 0.1},
             smallest_sigma_m);
   }
@@ -23,5 +27,6 @@ const Registry<MotionPredictor, const PredictorOptions&>& predictors();
 
 std::unique_ptr<MotionPredictor> make_hold(const PredictorOptions& options);
 std::unique_ptr<MotionPredictor> make_constant_velocity(const PredictorOptions& options);
+std::unique_ptr<MotionPredictor> make_constant_acceleration(const PredictorOptions& options);
 
 }  // namespace heartservo::servo

@@ -27,8 +27,10 @@ class RecordedTable final : public Table, private tracking::FrameSource {
         source_(tracking::open_source(resolve(scene, scene.recording.source), scene.camera.frame_rate_hz)),
         camera_(camera_of(scene, source_->size().width, source_->size().height)),
         region_(picked_region()),
+        side_(roomier_side()),
         offset_(chosen_offset()),
-        view_(camera_, scene.tool),
+        tool_(tool_from(side_)),
+        view_(camera_, tool_),
         robot_(scene.robot, target_start() + offset_ + scene.robot.start_error_m,
                static_cast<std::uint64_t>(scene.seed)) {
     if (!scene.recording.reference.empty())
@@ -39,14 +41,14 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   tracking::FrameSource& frames() override { return *this; }
   servo::ToolRobot& robot() override { return robot_; }
   const tracking::Camera& camera() const override { return camera_; }
-  Eigen::Vector3d marker_to_tip() const override { return -scene_.tool.marker_offset_m; }
+  Eigen::Vector3d marker_to_tip() const override { return -tool_.marker_offset_m; }
   Eigen::Vector3d offset() const override { return offset_; }
   double region_side_m() const override { return 0; }
-  double marker_side_m() const override { return scene_.tool.marker_side_m; }
+  double marker_side_m() const override { return tool_.marker_side_m; }
   std::string reference() const override { return reference_ ? reference_->file() : "tracked"; }
 
   HandPicked picked() const override {
-    const auto corners = marker_corners(scene_.tool, start_tip_);
+    const auto corners = marker_corners(tool_, start_tip_);
     HandPicked picked;
     picked.target = region_;
     picked.marker_edge_ratio = kFrameEdge;
@@ -96,16 +98,30 @@ class RecordedTable final : public Table, private tracking::FrameSource {
     return scene_.recording.depth_m * Eigen::Vector3d(n.x(), n.y(), 1);
   }
   Eigen::Vector3d target_start() const { return on_depth(tracking::centre(region_)); }
+  // The side of the region, as signs of x and y, on which the picture has more room for the tool.
+  Eigen::Vector2d roomier_side() const {
+    const Eigen::Vector2d c = tracking::centre(region_);
+    return {c.x() < 0.5 * camera_.width ? 1 : -1, c.y() < 0.5 * camera_.height ? 1 : -1};
+  }
   Eigen::Vector3d chosen_offset() const {
     if (!scene_.loop.offset_m.isZero()) return scene_.loop.offset_m;
-    return kClearance * (on_depth(region_[2]) - target_start());
+    const std::size_t corner = side_.y() > 0 ? (side_.x() > 0 ? 2 : 3) : (side_.x() > 0 ? 1 : 0);
+    return kClearance * (on_depth(region_[corner]) - target_start());
+  }
+  ToolOptions tool_from(const Eigen::Vector2d& side) const {
+    ToolOptions tool = scene_.tool;
+    for (Eigen::Vector3d* v : {&tool.direction, &tool.marker_offset_m})
+      v->head<2>() = v->head<2>().cwiseAbs().cwiseProduct(side);
+    return tool;
   }
 
   Scene scene_;
   std::unique_ptr<tracking::FrameSource> source_;
   tracking::Camera camera_;
   tracking::Quad region_;
+  Eigen::Vector2d side_;
   Eigen::Vector3d offset_;
+  ToolOptions tool_;
   ToolView view_;
   CartesianRobot robot_;
   std::optional<ReferenceTrack> reference_;
