@@ -4,6 +4,9 @@
 
 namespace heartservo::sim {
 
+/// Edge between the pattern's dark frame and its light rim: |x| or |y|.
+inline constexpr double kFrameEdge = 0.84;
+
 /// Grey level (0..255) of pattern `id` at (x, y) in [-1, 1]^2 (x right, y down), the plate's outline being |x|, |y|
 /// = 1.
 ///
@@ -12,7 +15,6 @@ namespace heartservo::sim {
 /// with soft edges; within a dark frame within a light rim, whose common edge |x|, |y| = kFrameEdge is paint against
 /// paint and so the same on any tissue: corners picked by hand are refined on it. Gradients are strong in both
 /// directions at every scale from the plate to a few pixels, and different ids look different.
-inline constexpr double kFrameEdge = 0.84;
 double painted_pattern(std::uint32_t id, double x, double y);
 
 }  // namespace heartservo::sim
