@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
 tools/setup/install.sh
-[[ -f build/release/build.ninja ]] || cmake --preset release
+cmake --preset release
 cmake --build --preset release --target heartservo
 build/release/heartservo servo scenes/pig_2007.yaml --out runs/demo "$@"
 echo
