@@ -39,13 +39,14 @@ class EsmAligner final : public PatchAligner {
     return patches_[static_cast<std::size_t>(std::min(level, static_cast<int>(patches_.size()) - 1))];
   }
 
-  Alignment align(const ImagePyramid& picture, const Alignment& start, int coarsest) override {
+  Alignment align(const ImagePyramid& picture, const Alignment& start, int coarsest, MotionModel model) override {
     Alignment a = start;
     a.iterations = 0;
     coarsest = std::min({coarsest, picture.levels() - 1, static_cast<int>(patches_.size()) - 1});
     for (int level = coarsest; level >= 0; --level)
       // A coarse level has too few points for the perspective terms: affine is enough to come near.
-      if (!align_level(picture.level(level), level, level == 0 ? 8 : 6, a)) return a;
+      if (!align_level(picture.level(level), level, static_cast<int>(level == 0 ? model : MotionModel::AFFINE), a))
+        return a;
     return a;
   }
 
@@ -114,7 +115,9 @@ class EsmAligner final : public PatchAligner {
     const AlignmentPass pass = run_pass(picture, patch, Interpolation::CUBIC, a);
     a.noise_grey = pass.noise_grey;
     a.visible = usable > 0 ? pass.weight / usable : 0;
-    a.correlation = weighted_correlation(patch, buffers_);
+    const Correlation c = correlation(patch, buffers_);
+    a.correlation = c.believed;
+    a.correlation_all = c.all;
   }
 
   EsmOptions options_;

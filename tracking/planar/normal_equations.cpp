@@ -161,21 +161,33 @@ AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBu
   return pass;
 }
 
-double weighted_correlation(const Patch& patch, const AlignmentBuffers& b) {
+namespace {
+
+// Sums of one correlation.
+struct Moments {
   double w = 0, a = 0, c = 0, aa = 0, cc = 0, ac = 0;
-  for (std::size_t i = 0; i < patch.size(); ++i) {
-    const double wi = static_cast<double>(b.weight[i]), x = static_cast<double>(b.grey[i]),
-                 y = static_cast<double>(patch.grey[i]);
-    w += wi;
-    a += wi * x;
-    c += wi * y;
-    aa += wi * x * x;
-    cc += wi * y * y;
-    ac += wi * x * y;
+  void add(double weight, double x, double y) {
+    w += weight;
+    a += weight * x, c += weight * y;
+    aa += weight * x * x, cc += weight * y * y, ac += weight * x * y;
   }
-  if (w <= 0) return 0;
-  const double va = aa - a * a / w, vc = cc - c * c / w;
-  return va > 0 && vc > 0 ? (ac - a * c / w) / std::sqrt(va * vc) : 0;
+  double correlation() const {
+    if (w <= 0) return 0;
+    const double va = aa - a * a / w, vc = cc - c * c / w;
+    return va > 0 && vc > 0 ? (ac - a * c / w) / std::sqrt(va * vc) : 0;
+  }
+};
+
+}  // namespace
+
+Correlation correlation(const Patch& patch, const AlignmentBuffers& b) {
+  Moments believed, all;
+  for (std::size_t i = 0; i < patch.size(); ++i) {
+    const double x = static_cast<double>(b.grey[i]), y = static_cast<double>(patch.grey[i]);
+    believed.add(static_cast<double>(b.weight[i]), x, y);
+    if (b.grey[i] < kSaturatedGrey) all.add(static_cast<double>(patch.usable[i] * b.inside[i]), x, y);
+  }
+  return {believed.correlation(), all.correlation()};
 }
 
 }  // namespace heartservo::tracking

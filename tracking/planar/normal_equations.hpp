@@ -31,7 +31,11 @@ struct AlignmentPass {
 /// the template's gradient.
 AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBuffers& buffers);
 
-/// Zero-mean normalised correlation of template and buffers.grey under buffers.weight (as the last pass left it).
-double weighted_correlation(const Patch& patch, const AlignmentBuffers& buffers);
+/// Zero-mean normalised correlation of template and buffers.grey.
+struct Correlation {
+  double believed = 0;  ///< under buffers.weight, as the last pass left it: glare and occlusion are left out
+  double all = 0;       ///< over every usable point that is not saturated
+};
+Correlation correlation(const Patch& patch, const AlignmentBuffers& buffers);
 
 }  // namespace heartservo::tracking

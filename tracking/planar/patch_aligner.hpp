@@ -14,12 +14,16 @@ namespace heartservo::tracking {
 struct Alignment {
   bool converged = false;  ///< false: singular, out of the picture, or not finite
   Eigen::Matrix3d G_plane_patch = Eigen::Matrix3d::Identity();
-  double gain = 1, bias = 0;  ///< template = gain * picture + bias
-  double correlation = 0;     ///< zero-mean normalised, over the points believed, -1..1
-  double visible = 0;         ///< share of the template's usable points that lie in the picture and fit (not occluded)
-  double noise_grey = 0;      ///< robust standard deviation of the remaining difference
+  double gain = 1, bias = 0;   ///< template = gain * picture + bias
+  double correlation = 0;      ///< zero-mean normalised, over the points believed, -1..1
+  double correlation_all = 0;  ///< the same over all points but saturated ones
+  double visible = 0;          ///< share of the template's usable points that lie in the picture and fit (not occluded)
+  double noise_grey = 0;       ///< robust standard deviation of the remaining difference
   int iterations = 0;
 };
+
+/// How much a region may change its shape in the picture.
+enum class MotionModel { AFFINE = 6, HOMOGRAPHY = 8 };  // the number of parameters of SL(3) in use
 
 class PatchAligner {
  public:
@@ -29,8 +33,9 @@ class PatchAligner {
   virtual void learn(const ImagePyramid& picture, const Camera& camera, const Eigen::Matrix3d& G_plane_patch,
                      int side_x, int side_y) = 0;
 
-  /// Starts from `start`; its position, gain and bias are used. Uses the pyramid levels from `coarsest` down to 0.
-  virtual Alignment align(const ImagePyramid& picture, const Alignment& start, int coarsest) = 0;
+  /// Starts from `start`; its position, gain and bias are used. Uses the pyramid levels from `coarsest` down to 0, the
+  /// model only at level 0 (a coarse level is affine at most).
+  virtual Alignment align(const ImagePyramid& picture, const Alignment& start, int coarsest, MotionModel model) = 0;
 
   /// The template at a pyramid level.
   virtual const Patch& patch(int level) const = 0;

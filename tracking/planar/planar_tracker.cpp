@@ -14,11 +14,13 @@ namespace heartservo::tracking {
 
 namespace {
 
-constexpr double kSmallestSide = 12;       // px
-constexpr double kSmallestGradient = 1.5;  // grey/px, RMS in the direction with the least texture
-constexpr double kVisibleShare = 0.5;      // a template that fits on fewer points loses quality
-constexpr double kLargestGrowth = 1.6;     // of the area, between two frames
-constexpr double kLargestScale = 3;        // of the side, against the reference
+constexpr double kSmallestSide = 12;        // px
+constexpr double kSmallestGradient = 1.5;   // grey/px, RMS in the direction with the least texture
+constexpr double kVisibleShare = 0.5;       // a template that fits on fewer points loses quality
+constexpr double kLargestGrowth = 1.6;      // of the area, between two frames
+constexpr double kLargestScale = 2.5;       // of the side, against the reference
+constexpr double kLikelyPerspective = 1.4;  // a 10 mm region 45 mm away, tilted by 60 degrees, has 1.21
+constexpr double kLikelyAnisotropy = 2;     // tilted by 60 degrees
 
 Eigen::Matrix3d intrinsics(const Camera& c) {
   Eigen::Matrix3d K;
@@ -52,6 +54,7 @@ std::string PlanarTracker::start(const Frame& frame, const Quad& corners) {
   width_ = frame.grey.cols;
   height_ = frame.grey.rows;
   side_px_ = std::max(side_x, side_y);
+  reference_corners_ = corners;
   const double half_x = side_x / side_px_, half_y = side_y / side_px_;
   patch_corners_ = rectangle(-half_x, -half_y, 2 * half_x, 2 * half_y);
   Quad plane;
@@ -104,24 +107,33 @@ Eigen::Matrix3d PlanarTracker::shifted(const Eigen::Matrix3d& G, const Eigen::Ve
   return move * G;
 }
 
-// 0 unless the alignment is plausible as a view of the same region.
+// How well the alignment fits, lowered where it is no likely view of the same piece of tissue: a template that holds on
+// to the wrong place fits best when it is bent out of shape.
 double PlanarTracker::quality_of(const Alignment& a, const Quad& expected) const {
   if (!a.converged || !(a.correlation > 0)) return 0;
   const Quad corners = corners_of(a.G_plane_patch);
   if (!is_convex(corners)) return 0;
-  const double growth = area(corners) / area(expected), total = std::sqrt(area(corners)) / side_px_;
-  if (growth > kLargestGrowth || growth < 1 / kLargestGrowth || total > kLargestScale || total < 1 / kLargestScale)
+  const ViewChange view = view_change(reference_corners_, corners);
+  const double growth = area(corners) / area(expected);
+  if (growth > kLargestGrowth || growth < 1 / kLargestGrowth || view.scale > kLargestScale ||
+      view.scale < 1 / kLargestScale)
     return 0;
   const Eigen::Vector2d c = centre(corners);
   if (c.x() < 0 || c.y() < 0 || c.x() > width_ - 1 || c.y() > height_ - 1) return 0;
-  return a.correlation * std::min(1.0, a.visible / kVisibleShare);
+  return a.correlation * std::min(1.0, a.visible / kVisibleShare) *
+         std::min(1.0, kLikelyPerspective / view.perspective) * std::min(1.0, kLikelyAnisotropy / view.anisotropy);
 }
 
 PlanarTracker::Candidate PlanarTracker::try_from(const Alignment& start, int coarsest, const Quad& expected) {
   Candidate c;
-  c.alignment = aligner_->align(pyramid_, start, coarsest);
+  c.alignment = aligner_->align(pyramid_, start, coarsest, MotionModel::HOMOGRAPHY);
   c.quality = quality_of(c.alignment, expected);
-  return c;
+  if (c.quality >= options_.ok_quality) return c;
+  // Too little texture, or tissue that deforms, lets the perspective terms run away: fewer parameters hold.
+  Candidate stiff;
+  stiff.alignment = aligner_->align(pyramid_, start, coarsest, MotionModel::AFFINE);
+  stiff.quality = quality_of(stiff.alignment, expected);
+  return stiff.quality > c.quality ? stiff : c;
 }
 
 PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
@@ -210,7 +222,7 @@ Track PlanarTracker::track(const Frame& frame) {
     if (locked_) found = follow(frame);
     if (!(found.quality >= options_.uncertain_quality)) {
       found = reacquire(frame.grey);
-      if (!(found.quality >= options_.ok_quality)) {
+      if (!(found.quality >= options_.reacquire_quality)) {
         found.quality = 0;
         locked_ = false;
       }

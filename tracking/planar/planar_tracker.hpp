@@ -12,17 +12,18 @@
 namespace heartservo::tracking {
 
 struct TrackerOptions {
-  int levels = 3;                  ///< pyramid levels at most; small regions use fewer
-  int max_iterations = 15;         ///< per level
-  double ok_quality = 0.75;        ///< at least this: OK (and needed to be found again)
-  double uncertain_quality = 0.5;  ///< at least this: UNCERTAIN; below: LOST
-  double search_px = 24;           ///< how far from the expected place to search before giving the region up
+  int levels = 3;                   ///< pyramid levels at most; small regions use fewer
+  int max_iterations = 15;          ///< per level
+  double ok_quality = 0.8;          ///< at least this: OK
+  double reacquire_quality = 0.87;  ///< needed to be found again after LOST
+  double uncertain_quality = 0.6;   ///< at least this: UNCERTAIN; below: LOST
+  double search_px = 24;            ///< how far from the expected place to search before giving the region up
 
   void fields(FieldVisitor& v) {
     v.field({"levels", "", "pyramid levels at most; small regions use fewer", 1, 6}, levels);
     v.field({"max_iterations", "", "iterations of the alignment per pyramid level", 1, 100}, max_iterations);
-    v.field({"ok_quality", "", "quality from which a track is OK, and which is needed to be found again", 0, 1},
-            ok_quality);
+    v.field({"ok_quality", "", "quality from which a track is OK", 0, 1}, ok_quality);
+    v.field({"reacquire_quality", "", "quality needed to be found again after LOST", 0, 1}, reacquire_quality);
     v.field({"uncertain_quality", "", "quality below which a track is LOST", 0, 1}, uncertain_quality);
     v.field({"search_px", "px", "how far around the expected place to search before giving the region up", 0, 500},
             search_px);
@@ -59,9 +60,10 @@ class PlanarTracker final : public TargetTracker {
   Camera camera_;
   TrackerOptions options_;
   ImagePyramid pyramid_;
-  Quad patch_corners_{};  // in patch coordinates
-  Alignment reference_;   // where the template was learnt
-  Alignment last_;        // last believed
+  Quad patch_corners_{};      // in patch coordinates
+  Quad reference_corners_{};  // px
+  Alignment reference_;       // where the template was learnt
+  Alignment last_;            // last believed
   double last_time_s_ = 0;
   Eigen::Vector2d plane_velocity_ = Eigen::Vector2d::Zero();  // of the centre, plane units per s
   bool started_ = false, locked_ = false;

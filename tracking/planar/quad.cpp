@@ -1,6 +1,8 @@
 #include "tracking/planar/quad.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 namespace heartservo::tracking {
 
@@ -55,6 +57,27 @@ Quad transform(const Eigen::Matrix3d& H, const Quad& quad) {
   Quad result;
   for (std::size_t i = 0; i < 4; ++i) result[i] = (H * quad[i].homogeneous()).hnormalized();
   return result;
+}
+
+ViewChange view_change(const Quad& reference, const Quad& current) {
+  ViewChange change;
+  change.scale = std::sqrt(std::abs(area(current) / area(reference)));
+  // The affine part, from the two mid-lines of each quad.
+  const auto axes = [](const Quad& q) {
+    Eigen::Matrix2d M;
+    M << (q[1] + q[2] - q[0] - q[3]) / 2, (q[2] + q[3] - q[0] - q[1]) / 2;
+    return M;
+  };
+  const Eigen::Matrix2d A = axes(current) * axes(reference).inverse();
+  const Eigen::Matrix2d AtA = A.transpose() * A;
+  const double mean = AtA.trace() / 2, spread = std::sqrt(std::max(0.0, mean * mean - AtA.determinant()));
+  change.anisotropy = std::sqrt((mean + spread) / std::max(1e-12, mean - spread));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto side = [i](const Quad& q, std::size_t k) { return (q[(i + k + 1) % 4] - q[(i + k) % 4]).norm(); };
+    const double ratio = side(current, 0) / side(reference, 0) * side(reference, 2) / side(current, 2);
+    change.perspective = std::max({change.perspective, ratio, 1 / ratio});
+  }
+  return change;
 }
 
 }  // namespace heartservo::tracking

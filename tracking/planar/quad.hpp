@@ -26,4 +26,12 @@ Eigen::Matrix3d homography_between(const Quad& from, const Quad& to);
 /// The quad's corners moved by H.
 Quad transform(const Eigen::Matrix3d& H, const Quad& quad);
 
+/// How a quad differs from the reference it is a view of.
+struct ViewChange {
+  double scale = 1;        ///< sqrt of the ratio of areas
+  double anisotropy = 1;   ///< ratio of the stretches along the two principal directions, >= 1
+  double perspective = 1;  ///< largest ratio of opposite sides, each against the reference's, >= 1
+};
+ViewChange view_change(const Quad& reference, const Quad& current);
+
 }  // namespace heartservo::tracking

@@ -22,8 +22,8 @@ struct Track {
   double quality = 0;  ///< 0 (nothing in common with the template) to 1 (identical)
   Quad corners{};      ///< px, in the picture as taken (distorted)
   Eigen::Matrix3d H_current_reference = Eigen::Matrix3d::Identity();  ///< on the undistorted pixel plane, det 1
-  double gain = 1;          ///< template grey = gain * picture grey + bias
-  double bias = 0;          ///< grey levels
+  double gain = 1;                                                    ///< template grey = gain * picture grey + bias
+  double bias = 0;                                                    ///< grey levels
   double noise_grey = 0;    ///< robust standard deviation of the remaining grey difference
   int iterations = 0;       ///< of the last alignment, all pyramid levels
   bool reacquired = false;  ///< found again in this frame after LOST

@@ -65,7 +65,8 @@ TEST(EsmAligner, ConvergesFromFivePixelsAwayToAHundredthOfAPixel) {
   double worst = 0;
   for (int i = 0; i < 50; ++i) {
     const Eigen::Matrix3d H = random_motion(random, 5);
-    const Alignment a = f.aligner->align(pyramid_of(test::analytic_image(320, 260, H)), f.start, 2);
+    const Alignment a =
+        f.aligner->align(pyramid_of(test::analytic_image(320, 260, H)), f.start, 2, MotionModel::HOMOGRAPHY);
     ASSERT_TRUE(a.converged);
     worst = std::max(worst, corner_error(a, H));
     EXPECT_GT(a.correlation, 0.999);
@@ -78,7 +79,8 @@ TEST(EsmAligner, EstimatesGainAndBias) {
   auto random = test::seeded();
   Fixture f;
   const Eigen::Matrix3d H = random_motion(random, 3);
-  const Alignment a = f.aligner->align(pyramid_of(test::analytic_image(320, 260, H, 0.7, 20)), f.start, 2);
+  const Alignment a =
+      f.aligner->align(pyramid_of(test::analytic_image(320, 260, H, 0.7, 20)), f.start, 2, MotionModel::HOMOGRAPHY);
   ASSERT_TRUE(a.converged);
   EXPECT_LT(corner_error(a, H), 0.015);
   EXPECT_NEAR(a.gain, 1 / 0.7, 0.005);
@@ -92,7 +94,7 @@ TEST(EsmAligner, IgnoresGlareAndAnOccludedQuarter) {
   cv::Mat image = test::analytic_image(320, 260, H);
   image(cv::Rect(125, 95, 40, 38)).setTo(15);
   image(cv::Rect(175, 140, 12, 9)).setTo(255);
-  const Alignment a = f.aligner->align(pyramid_of(image), f.start, 1);
+  const Alignment a = f.aligner->align(pyramid_of(image), f.start, 1, MotionModel::HOMOGRAPHY);
   ASSERT_TRUE(a.converged);
   EXPECT_LT(corner_error(a, H), 0.1);
   EXPECT_LT(a.visible, 0.85);
@@ -119,7 +121,7 @@ TEST(EsmAligner, FollowsThroughADistortedCamera) {
   const auto aligner = make_esm_aligner({30, 1e-4});
   aligner->learn(pyramid_of(draw({0, 0})), camera, start.G_plane_patch, 60, 60);
   const Eigen::Vector2d shift(7, -5);
-  const Alignment a = aligner->align(pyramid_of(draw(shift)), start, 2);
+  const Alignment a = aligner->align(pyramid_of(draw(shift)), start, 2, MotionModel::HOMOGRAPHY);
   ASSERT_TRUE(a.converged);
   const Quad found = transform(a.G_plane_patch, kPatchCorners);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((found[i] - plane[i] - shift / 594).norm() * 594, 0.02);
@@ -161,11 +163,15 @@ TEST(EsmAligner, SaysSoWhenTheRegionLeavesThePicture) {
   Fixture f;
   Alignment start = f.start;
   start.G_plane_patch = homography_between(kPatchCorners, rectangle(600, 500, kSide, kSide));
-  EXPECT_FALSE(f.aligner->align(pyramid_of(test::analytic_image(320, 260)), start, 2).converged);
+  EXPECT_FALSE(
+      f.aligner->align(pyramid_of(test::analytic_image(320, 260)), start, 2, MotionModel::HOMOGRAPHY).converged);
   start.G_plane_patch.setConstant(std::nan(""));
-  EXPECT_FALSE(f.aligner->align(pyramid_of(test::analytic_image(320, 260)), start, 2).converged);
+  EXPECT_FALSE(
+      f.aligner->align(pyramid_of(test::analytic_image(320, 260)), start, 2, MotionModel::HOMOGRAPHY).converged);
   start = f.start;
-  EXPECT_FALSE(f.aligner->align(pyramid_of(cv::Mat(260, 320, CV_8UC1, cv::Scalar(90))), start, 2).correlation > 0.3);
+  EXPECT_FALSE(
+      f.aligner->align(pyramid_of(cv::Mat(260, 320, CV_8UC1, cv::Scalar(90))), start, 2, MotionModel::HOMOGRAPHY)
+          .correlation > 0.3);
 }
 
 }  // namespace
