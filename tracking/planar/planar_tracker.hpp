@@ -17,6 +17,7 @@ struct TrackerOptions {
   double ok_quality = 0.8;          ///< at least this: OK
   double reacquire_quality = 0.87;  ///< needed to be found again after LOST
   double uncertain_quality = 0.6;   ///< at least this: UNCERTAIN; below: LOST
+  double corner_sigma_px = 0.05;    ///< standard deviation of a tracked corner, for the covariance of the pose
   double search_px = 24;            ///< how far from the expected place to search before giving the region up
 
   void fields(FieldVisitor& v) {
@@ -25,6 +26,9 @@ struct TrackerOptions {
     v.field({"ok_quality", "", "quality from which a track is OK", 0, 1}, ok_quality);
     v.field({"reacquire_quality", "", "quality needed to be found again after LOST", 0, 1}, reacquire_quality);
     v.field({"uncertain_quality", "", "quality below which a track is LOST", 0, 1}, uncertain_quality);
+    v.field({"corner_sigma_px", "px", "standard deviation of a tracked corner: how far predictors trust positions",
+             1e-4, 10},
+            corner_sigma_px);
     v.field({"search_px", "px", "how far around the expected place to search before giving the region up", 0, 500},
             search_px);
   }
