@@ -1,18 +1,22 @@
 #include "tools/command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "tools/run_folder.hpp"
 #include "tracking/settings/errors.hpp"
+#include "tracking/settings/yaml_reader.hpp"
 #include "tracking/settings/yaml_writer.hpp"
 
 namespace heartservo::tools {
 
 namespace {
 
-constexpr double kEndless_s = 1e5;
+constexpr double kEndless_s = 1e5;  // the longest run
 
 std::string absolute(const std::string& path) { return std::filesystem::absolute(path).lexically_normal().string(); }
 
@@ -31,20 +35,45 @@ sim::Scene recorded_scene(const std::string& source) {
 
 }  // namespace
 
+CLI::Validator finite(double low, double high) {
+  const std::string range = fmt::format("[{} - {}]", low, high);
+  return {[=](std::string& text) {
+            double value = NAN;
+            const bool is_number = CLI::detail::lexical_cast(text, value);
+            if (is_number && value >= low && value <= high) return std::string();  // false for NaN
+            return fmt::format("'{}' must be a number from {} to {}", text, low, high);
+          },
+          range};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& names) {
+  return {[=](std::string& text) {
+            if (std::find(names.begin(), names.end(), text) != names.end()) return std::string();
+            return fmt::format("'{}' is not known{}; choose one of {}", text, did_you_mean(text, names),
+                               fmt::join(names, ", "));
+          },
+          fmt::format("{{{}}}", fmt::join(names, ","))};
+}
+
+std::size_t rows_ahead(std::size_t expected_frames) { return std::clamp<std::size_t>(expected_frames, 256, 100000); }
+
 void add_run_options(CLI::App& command, RunOptions& o, const std::string& source_help) {
   command.add_option("source", o.source, source_help);
   command.add_option("--out", o.out, "run folder (default: runs/COMMAND-NAME-DATE)")->type_name("DIR");
   command.add_option("--seed", o.seed, "seed of every random draw")->check(CLI::Range(0, 2000000000));
-  command.add_option("--frames", o.frames, "number of frames")->check(CLI::Range(2, 2000000000));
+  command.add_option("--frames", o.frames, "number of frames")->check(CLI::Range(1, 2000000000));
   command.add_flag("--json", o.json, "print summary.json on stdout and nothing else");
   command.add_flag("--quiet", o.quiet, "no progress and no table");
 }
 
 void add_recording_options(CLI::App& command, RecordedOptions& o) {
-  command.add_option("--roi", o.roi, "region in the first frame: x,y,width,height in px")->delimiter(',')->expected(4);
+  command.add_option("--roi", o.roi, "region in the first frame: x,y,width,height in px")
+      ->delimiter(',')
+      ->expected(4)
+      ->check(finite(-1e5, 1e5));
   command.add_option("--camera", o.camera, "camera file (ROS, OpenCV, ViSP)")->type_name("FILE");
   command.add_option("--frame-rate-hz", o.frame_rate_hz, "frames per second of recorded frames")
-      ->check(CLI::Range(0.1, 10000.0));
+      ->check(finite(0.1, 10000));
 }
 
 bool is_scene(const std::string& source) {
@@ -63,8 +92,12 @@ sim::Scene scene_for(const RunOptions& run, const RecordedOptions& recorded) {
   if (!scene.is_recorded() && (!recorded.roi.empty() || recorded.depth_mm > 0))
     throw ConfigError("--roi and --depth-mm are for recorded frames; a simulated scene has its region under 'target'");
   if (run.frames) scene.max_frames = static_cast<std::size_t>(*run.frames);
-  if (run.frames && !scene.is_recorded())
+  if (run.frames && !scene.is_recorded()) {
     scene.duration_s = static_cast<double>(*run.frames) / scene.camera.frame_rate_hz;
+    if (scene.duration_s > kEndless_s)
+      throw ConfigError(fmt::format("--frames {} at {} Hz are {:.0f} s; at most {:.0f} s can be simulated", *run.frames,
+                                    scene.camera.frame_rate_hz, scene.duration_s, kEndless_s));
+  }
   return scene;
 }
 
@@ -75,8 +108,11 @@ std::string stem_of(const std::string& source) {
 }
 
 std::string config_text(const sim::Scene& scene, const std::string& command) {
-  return fmt::format("# heartservo {} {}: the resolved configuration; paths are relative to {}\n{}", HEARTSERVO_VERSION,
-                     command, std::filesystem::absolute(scene.folder).lexically_normal().string(), to_yaml(scene));
+  sim::Scene resolved = scene;
+  for (std::string* path : {&resolved.camera.calibration, &resolved.recording.source, &resolved.recording.reference})
+    if (!path->empty()) *path = absolute(sim::resolve(scene, *path));
+  return fmt::format("# heartservo {} {}: the resolved configuration; it can be run again as a scene\n{}",
+                     HEARTSERVO_VERSION, command, to_yaml(resolved));
 }
 
 std::filesystem::path run_path(const RunOptions& options, const std::string& command) {

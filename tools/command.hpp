@@ -29,6 +29,13 @@ struct Command {
 Command add_servo_command(CLI::App& program);
 Command add_track_command(CLI::App& program);
 Command add_render_command(CLI::App& program);
+Command add_scene_command(CLI::App& program);
+
+/// A check for options: a finite number from `low` to `high`. CLI::Range lets NaN pass.
+CLI::Validator finite(double low, double high);
+
+/// A check for options: one of `names`, with a "did you mean".
+CLI::Validator one_of(const std::vector<std::string>& names);
 
 /// Options of every command that makes a run.
 struct RunOptions {
@@ -57,8 +64,12 @@ sim::Scene scene_for(const RunOptions& run, const RecordedOptions& recorded);
 /// "pig_2007" of scenes/pig_2007.yaml, "left" of heart/left/.
 std::string stem_of(const std::string& source);
 
-/// config.yaml: the resolved scene, with the program's version and the command in a comment.
+/// config.yaml: the resolved scene, with the program's version and the command in a comment. Its paths are absolute, so
+/// that it is itself a scene that can be run.
 std::string config_text(const sim::Scene& scene, const std::string& command);
+
+/// Rows to make room for: the frames expected, within reason (0: nobody knows).
+std::size_t rows_ahead(std::size_t expected_frames);
 
 /// Where the run goes: --out, or a folder made of command, source and date.
 std::filesystem::path run_path(const RunOptions& options, const std::string& command);

@@ -22,6 +22,13 @@ CornerTruth::CornerTruth(const std::string& file) : table_(TimeTable::read_csv(f
       throw InputError(fmt::format("{}: column {} is missing; expected what 'heartservo render' writes", file, name));
 }
 
+double CornerTruth::frame_rate_hz() const {
+  const auto times = table_.time_s();
+  double shortest_s = INFINITY;
+  for (std::size_t i = 1; i < times.size(); ++i) shortest_s = std::min(shortest_s, times[i] - times[i - 1]);
+  return 1 / shortest_s;
+}
+
 std::optional<tracking::Quad> CornerTruth::at(double time_s) const {
   constexpr double kSameTime_s = 1e-6;
   const auto times = table_.time_s();

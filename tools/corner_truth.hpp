@@ -17,6 +17,9 @@ class CornerTruth {
   /// Throws InputError: unreadable, or a column is missing.
   explicit CornerTruth(const std::string& file);
 
+  /// Of the rows, from the shortest time between two of them; 0 where there are fewer.
+  double frame_rate_hz() const;
+
   /// None where the file has no row within 1 microsecond of the time, or an empty cell.
   std::optional<tracking::Quad> at(double time_s) const;
 

@@ -1,8 +1,12 @@
 // heartservo: one program, one file per command.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <opencv2/core/utils/logger.hpp>
 
 #include "tools/command.hpp"
@@ -50,9 +54,24 @@ int parse_error(const CLI::App& program, const CLI::ParseError& e) {
   return complain(WRONG_USAGE, e.what() + help);
 }
 
+// A stream that the caller closed would give its number to the next file opened, and our lines would land in there.
+// A placeholder that cannot be used keeps the number, and writing fails as it should.
+void occupy_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+      ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+// What the program printed is only there when the last buffer is out: a full disk shows here.
+int finish(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return complain(WRONG_USAGE, fmt::format("stdout cannot be written: {}", std::strerror(errno)));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupy_closed_streams();
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // errors are ours to say, in one line
   CLI::App program(
       "heartservo: the motion of a beating heart from an endoscope, and a tool that stands still on it.\n"
@@ -62,14 +81,15 @@ int main(int argc, char** argv) {
   program.footer(
       "Example: heartservo servo scenes/pig_2007.yaml\n"
       "Exit codes: 0 done, 2 wrong usage or configuration, 3 unreadable input, 4 device trouble, 5 safety stop");
-  const Command commands[] = {add_servo_command(program), add_track_command(program), add_render_command(program)};
+  const Command commands[] = {add_servo_command(program), add_track_command(program), add_render_command(program),
+                              add_scene_command(program)};
   try {
     program.parse(argc, argv);
     for (const Command& command : commands)
-      if (command.app->parsed()) return command.run();
+      if (command.app->parsed()) return finish(command.run());
     return WRONG_USAGE;
   } catch (const CLI::Success& e) {  // --help and --version
-    return program.exit(e);
+    return finish(program.exit(e));
   } catch (const CLI::ParseError& e) {
     return parse_error(program, e);
   } catch (const ConfigError& e) {
@@ -78,6 +98,8 @@ int main(int argc, char** argv) {
     return complain(BAD_INPUT, e.what());
   } catch (const DeviceError& e) {
     return complain(DEVICE_TROUBLE, e.what());
+  } catch (const std::system_error& e) {  // fmt::print
+    return complain(WRONG_USAGE, fmt::format("stdout cannot be written: {}", e.code().message()));
   } catch (const std::exception& e) {
     return complain(INTERNAL_ERROR, fmt::format("internal error, please report it: {}", e.what()));
   }

@@ -44,7 +44,7 @@ int run_render(const RenderOptions& o) {
   const std::size_t expected = table->frames().frame_count().value_or(0);
   auto columns = corner_columns();
   for (const char* name : {"truth/x_m", "truth/y_m", "truth/z_m"}) columns.emplace_back(name);
-  TimeTable truth(columns, expected);
+  TimeTable truth(columns, rows_ahead(expected));
   RunFolder folder(run_path(o.run, "render"));
   std::filesystem::create_directories(folder.file("frames"));
   cv::Mat first;
@@ -83,7 +83,7 @@ int run_render(const RenderOptions& o) {
   report.headline = fmt::format("{} frames of {}, with truth.", truth.rows(), scene.title);
   report.headline_number = std::to_string(truth.rows());
   report.headline_unit = "frames";
-  report.pictures = {{"first frame", first}};
+  if (!first.empty()) report.pictures = {{"first frame", first}};  // interrupted before it
   report.plots = {
       {"True position of the target", "mm", {{"x", "truth/x_m"}, {"y", "truth/y_m"}, {"z", "truth/z_m"}}, 1e3}};
   report.table = &truth;

@@ -15,6 +15,7 @@
 #include "tools/run_folder.hpp"
 #include "tools/servo_report.hpp"
 #include "tools/servo_summary.hpp"
+#include "tracking/landmark/registry.hpp"
 #include "tracking/planar/registry.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_writer.hpp"
@@ -23,12 +24,13 @@ namespace heartservo::tools {
 
 namespace {
 
-constexpr double kFlight_s = 2;  // of the flight recording after a safety stop
+constexpr double kFlight_s = 2;        // of the flight recording after a safety stop
+constexpr double kMostUnscored = 0.9;  // share of a run that may be spent on settling
 
 struct ServoOptions {
   RunOptions run;
   RecordedOptions recorded;
-  std::string tracker, estimator, predictor, controller, robot, reference;
+  std::string tracker, predictor, controller, robot, reference;
   double latency_ms = -1, settle_s = -1;
 };
 
@@ -36,16 +38,31 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 
 template <class Registry>
 void print_engines(const char* kind, const Registry& registry) {
-  for (const auto& engine : registry.engines()) fmt::print("{:<12}{:<20}{}\n", kind, engine.name, engine.summary);
+  for (const auto& engine : registry.engines()) fmt::print("{:<12}{:<24}{}\n", kind, engine.name, engine.summary);
 }
 
 int list_engines() {
   print_engines("tracker", tracking::trackers());
+  print_engines("estimator", tracking::estimators());
   print_engines("predictor", servo::predictors());
   print_engines("controller", servo::control_laws());
-  fmt::print("{:<12}{:<20}{}\n{:<12}{:<20}{}\n", "robot", "cartesian", "second order, limits, encoder noise", "robot",
+  fmt::print("{:<12}{:<24}{}\n{:<12}{:<24}{}\n", "robot", "cartesian", "second order, limits, encoder noise", "robot",
              "ideal", "follows its reference exactly");
   return DONE;
+}
+
+// A run too short for the scene's settling time would score nothing. Unless the command line asks for that time, its
+// second half is scored then, and says so.
+void fit_settling(sim::Scene& scene, const ServoOptions& o, std::size_t frames, double frame_rate_hz) {
+  const double last_s = frames == 0 ? 0 : static_cast<double>(frames - 1) / frame_rate_hz;
+  if (o.settle_s >= 0 && o.settle_s > last_s)
+    throw ConfigError(
+        fmt::format("--settle-s {} leaves nothing to score: the last frame is at {:.3g} s", o.settle_s, last_s));
+  if (o.settle_s >= 0 || scene.settle_s <= kMostUnscored * last_s) return;
+  if (!o.run.quiet && scene.settle_s > 0)
+    fmt::print(stderr, "heartservo: settle_s ({} s) is too long for {} frames: scored from {:.3g} s on\n",
+               scene.settle_s, frames, 0.5 * last_s);
+  scene.settle_s = 0.5 * last_s;
 }
 
 sim::Scene configure(const ServoOptions& o) {
@@ -62,6 +79,7 @@ sim::Scene configure(const ServoOptions& o) {
   if (!o.reference.empty()) scene.recording.reference = std::filesystem::absolute(o.reference).string();
   if (o.latency_ms >= 0) scene.loop.latency.set_total(1e-3 * o.latency_ms);
   if (o.settle_s >= 0) scene.settle_s = o.settle_s;
+  if (o.run.frames && !scene.is_recorded()) fit_settling(scene, o, scene.frame_count(), scene.camera.frame_rate_hz);
   sim::require_valid(scene, o.run.source);
   return scene;
 }
@@ -112,7 +130,7 @@ class Album {
 
 int run_servo(const ServoOptions& o) {
   if (o.run.list) return list_engines();
-  const sim::Scene scene = configure(o);
+  sim::Scene scene = configure(o);
   const auto table = sim::make_table(scene);
   const servo::LoopOptions loop_options = sim::loop_options(scene, *table);
   servo::Loop loop(table->frames(), table->robot(), sim::make_stages(scene, *table), loop_options,
@@ -122,9 +140,10 @@ int run_servo(const ServoOptions& o) {
     throw ConfigError(fmt::format("{}: the region cannot be tracked: {}", o.run.source, why));
 
   const std::size_t expected = table->frames().frame_count().value_or(0);
-  TimeTable frames = make_loop_table(std::max<std::size_t>(expected, 1024));
+  if (scene.is_recorded() && expected > 0) fit_settling(scene, o, expected, loop_options.frame_rate_hz);
+  TimeTable frames = make_loop_table(rows_ahead(expected));
   servo::Score score(scene.settle_s, 1 / loop_options.frame_rate_hz);
-  score.reserve(std::max<std::size_t>(expected, 1024));
+  score.reserve(rows_ahead(expected));
   Album album(scene.settle_s);
   ServoRunFacts facts;
   RunFolder folder(run_path(o.run, "servo"));
@@ -178,17 +197,17 @@ Command add_servo_command(CLI::App& program) {
   add_run_options(*app, o.run, "scene (.yaml), image folder, printf pattern or video");
   add_recording_options(*app, o.recorded);
   app->add_option("--depth-mm", o.recorded.depth_mm, "assumed distance of the region in recorded frames")
-      ->check(CLI::Range(1.0, 10000.0));
+      ->check(finite(1, 10000));
   app->add_option("--reference", o.reference,
                   "CSV time_s,u_px,v_px: where the region truly is, to score recorded frames")
       ->type_name("FILE");
   app->add_option("--tracker", o.tracker, "overrides the scene's tracker");
   app->add_option("--predictor", o.predictor, "overrides the scene's predictor");
   app->add_option("--controller", o.controller, "overrides the scene's control law");
-  app->add_option("--robot", o.robot, "overrides the scene's robot")->check(CLI::IsMember({"cartesian", "ideal"}));
+  app->add_option("--robot", o.robot, "overrides the scene's robot")->check(one_of({"cartesian", "ideal"}));
   app->add_option("--latency-ms", o.latency_ms, "total latency; the scene's parts keep their proportions")
-      ->check(CLI::Range(0.0, 1900.0));
-  app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(CLI::Range(0.0, 1e4));
+      ->check(finite(0, 1900));
+  app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(finite(0, 1e4));
   app->add_flag("--list", o.run.list, "list the engines and exit");
   app->footer(
       "Examples:\n  heartservo servo scenes/pig_2007.yaml\n"

@@ -41,22 +41,25 @@ json servo_summary(const servo::ScoreSummary& s, const sim::Scene& scene, const 
   j["settle_s"] = scene.settle_s;
   j["interrupted"] = facts.interrupted;
   j["stop_reason"] = facts.stop_reason.empty() ? json() : json(facts.stop_reason);
+  const bool moved = s.metric ? s.motion_rms > 0 : s.motion_px.rms > 0;
   if (s.metric) {
     j["motion"] = {{"rms_mm", 1e3 * s.motion_rms}, {"peak_to_peak_mm", xyz(1e3 * s.motion_peak_to_peak)}};
     j["residual"] = {{"rms_mm", 1e3 * s.residual.rms},
                      {"p95_mm", 1e3 * s.residual.p95},
                      {"max_mm", 1e3 * s.residual.max},
                      {"axis_rms_mm", xyz(1e3 * s.residual_axis_rms)}};
-    j["reduction_percent"] = s.reduction_percent;
+    j["reduction_percent"] = moved ? json(s.reduction_percent) : json();
   } else {
     j["motion"] = nullptr;
     j["residual"] = nullptr;
-    j["reduction_percent"] = s.residual_px.count > 0 ? json(s.reduction_percent_px) : json();
+    j["reduction_percent"] = s.residual_px.count > 0 && moved ? json(s.reduction_percent_px) : json();
   }
-  j["motion_px"] = {{"rms", s.motion_px.rms}};
-  j["residual_px"] = {{"rms", s.residual_px.rms},
-                      {"p95", s.residual_px.p95},
-                      {"max", s.residual_px.max},
+  // a score of no frames is none: 0 would read as perfect
+  const auto px = [&](double value) { return s.residual_px.count > 0 ? json(value) : json(); };
+  j["motion_px"] = {{"rms", px(s.motion_px.rms)}};
+  j["residual_px"] = {{"rms", px(s.residual_px.rms)},
+                      {"p95", px(s.residual_px.p95)},
+                      {"max", px(s.residual_px.max)},
                       {"frames", s.residual_px.count},
                       {"reference", facts.reference}};
   j["tracking"] = {{"lost_frames", s.lost_frames},
@@ -68,7 +71,7 @@ json servo_summary(const servo::ScoreSummary& s, const sim::Scene& scene, const 
   if (s.corner_error_px.count > 0)
     j["tracking"]["error_px"] = {
         {"mean", s.corner_error_px.mean}, {"std", s.corner_error_px.std}, {"max", s.corner_error_px.max}};
-  if (s.metric) j["tracking"]["position_error_mm"] = std_max(s);
+  if (s.metric && s.lost_frames < s.frames) j["tracking"]["position_error_mm"] = std_max(s);
   j["commands"] = {{"max_speed_mm_s", 1e3 * s.max_speed},
                    {"max_step_mm", 1e3 * s.max_step_m},
                    {"limited", s.limited_commands},

@@ -1,6 +1,7 @@
 // heartservo track: follows a region with one or several trackers side by side.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "servo/loop/loop_record.hpp"
@@ -36,7 +37,7 @@ struct TrackOptions {
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 int list_trackers() {
-  for (const auto& engine : tracking::trackers().engines()) fmt::print("{:<20}{}\n", engine.name, engine.summary);
+  for (const auto& engine : tracking::trackers().engines()) fmt::print("{:<24}{}\n", engine.name, engine.summary);
   return DONE;
 }
 
@@ -51,6 +52,10 @@ sim::Scene configure(const TrackOptions& o) {
   if (o.square_mm > 0 && scene.is_recorded() && scene.camera.calibration.empty())
     throw ConfigError("--square-mm needs --camera FILE: without a calibration there are no millimetres");
   return scene;
+}
+
+bool are_pictures(const std::string& source) {
+  return std::filesystem::is_directory(source) || source.find('%') != std::string::npos;
 }
 
 std::unique_ptr<tracking::TargetEstimator> estimator_for(const TrackOptions& o, const sim::Table& table) {
@@ -104,12 +109,19 @@ Report track_report(const nlohmann::json& summary, const std::vector<TrackLane>&
 
 int run_track(const TrackOptions& o) {
   if (o.run.list) return list_trackers();
-  const sim::Scene scene = configure(o);
-  std::vector<std::string> names = o.trackers.empty() ? std::vector<std::string>{scene.engines.tracker} : o.trackers;
-  if (names == std::vector<std::string>{"all"}) names = tracking::trackers().names();
-  for (const auto& name : names) tracking::trackers().require(name);
+  sim::Scene scene = configure(o);
   std::optional<CornerTruth> truth_file;
   if (!o.truth.empty()) truth_file.emplace(o.truth);
+  // pictures carry no clock: where the command line gives none they run on that of their truth
+  if (truth_file && o.recorded.frame_rate_hz == 0 && !is_scene(o.run.source) && are_pictures(o.run.source))
+    scene.camera.frame_rate_hz = truth_file->frame_rate_hz();
+  std::vector<std::string> names = o.trackers.empty() ? std::vector<std::string>{scene.engines.tracker} : o.trackers;
+  if (names == std::vector<std::string>{"all"}) names = tracking::trackers().names();
+  for (const auto& name : names) {
+    tracking::trackers().require(name);
+    if (std::count(names.begin(), names.end(), name) > 1)
+      throw ConfigError(fmt::format("--tracker: '{}' is given twice; keep one", name));
+  }
   const auto table = sim::make_table(scene);
   const std::size_t expected = table->frames().frame_count().value_or(0);
 
@@ -119,7 +131,7 @@ int run_track(const TrackOptions& o) {
   std::vector<TrackLane> lanes;
   for (const auto& name : names)
     lanes.emplace_back(name, tracking::trackers().make(name, lens, scene.tracking), estimator_for(o, *table),
-                       std::max<std::size_t>(expected, 256));
+                       rows_ahead(expected));
   tracking::Frame frame;
   if (!table->frames().next(frame)) throw InputError(o.run.source + ": there is no frame");
   const auto picked = table->picked();
@@ -132,7 +144,7 @@ int run_track(const TrackOptions& o) {
 
   RunFolder folder(run_path(o.run, "track"));
   std::vector<ReportPicture> pictures;
-  std::size_t count = 0;
+  std::size_t count = 0, with_truth = 0;
   bool interrupted = false;
   {
     const Interrupt interrupt;
@@ -141,6 +153,7 @@ int run_track(const TrackOptions& o) {
       servo::LoopRecord record;
       record.frame = frame;
       const auto truth = truth_file ? truth_file->at(frame.time_s) : table->truth(record).corners_px;
+      with_truth += truth.has_value();
       cv::Mat canvas;
       const bool show = frame.status == tracking::FrameStatus::OK && (count == 0 || count == expected / 2);
       if (show) canvas = canvas_of(frame);
@@ -173,6 +186,9 @@ int run_track(const TrackOptions& o) {
     fmt::print("{}\n", summary.dump(2));
   else if (!o.run.quiet)
     fmt::print("{}\nreport: {}\n", track_table(summary), folder.file("report.html").string());
+  if (truth_file && with_truth == 0)
+    fmt::print(stderr, "heartservo: {}: no row has the time of a frame, so no error is known; check --frame-rate-hz\n",
+               o.truth);
   return interrupted ? INTERRUPTED : DONE;
 }
 
@@ -187,9 +203,10 @@ Command add_track_command(CLI::App& program) {
   app->add_option("--tracker", o.trackers, "trackers, separated by commas, or 'all'")->delimiter(',');
   app->add_option("--corners", o.corners, "region as x1,y1,...,x4,y4 in px, clockwise from top left")
       ->delimiter(',')
-      ->expected(8);
+      ->expected(8)
+      ->check(finite(-1e5, 1e5));
   app->add_option("--square-mm", o.square_mm, "side of the square landmark: metric pose, with --camera")
-      ->check(CLI::Range(0.1, 1000.0));
+      ->check(finite(0.1, 1000));
   app->add_option("--truth", o.truth, "CSV of the true corners, as 'heartservo render' writes it")->type_name("FILE");
   app->add_flag("--list", o.run.list, "list the trackers and exit");
   app->footer(

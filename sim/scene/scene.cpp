@@ -53,12 +53,14 @@ std::vector<std::string> Scene::validate() const {
   if (settle_s >= duration_s && !is_recorded())
     problems.push_back(
         fmt::format("settle_s ({} s) leaves nothing of duration_s ({} s) to score", settle_s, duration_s));
-  if (frame_count() < 2 && !is_recorded()) problems.emplace_back("duration_s is shorter than two frames");
+  if (frame_count() < 1 && !is_recorded()) problems.emplace_back("duration_s is shorter than a frame");
   if (target.landmark >= static_cast<int>(surface.landmarks.size()) && !is_recorded())
     problems.push_back(fmt::format("target.landmark is {} but surface.landmarks has {} entries", target.landmark,
                                    surface.landmarks.size()));
   if (!recording.roi.empty() && recording.roi.size() != 4)
     problems.emplace_back("recording.roi must be x, y, width, height");
+  else if (recording.roi.size() == 4 && !(recording.roi[2] > 0 && recording.roi[3] > 0))
+    problems.emplace_back("recording.roi needs a width and a height above 0");
   if (tracking.uncertain_quality > tracking.ok_quality)
     problems.emplace_back("tracking.uncertain_quality is above tracking.ok_quality");
   if (!(loop.latency.total_s() < 2)) problems.emplace_back("loop.latency adds up to 2 s or more");

@@ -69,6 +69,8 @@ class RecordedTable final : public Table, private tracking::FrameSource {
  private:
   bool next(tracking::Frame& frame) override {
     if (count_ >= limit_ || !source_->next(frame)) return false;
+    if (count_ == 0 && frame.status != tracking::FrameStatus::OK)
+      throw InputError(frame.note + "; the first frame must show the region");
     ++count_;
     robot_.advance_to(frame.time_s);
     tip_ = robot_.true_tip_camera();
