@@ -60,8 +60,8 @@ void fit_settling(sim::Scene& scene, const ServoOptions& o, std::size_t frames, 
         fmt::format("--settle-s {} leaves nothing to score: the last frame is at {:.3g} s", o.settle_s, last_s));
   if (o.settle_s >= 0 || scene.settle_s <= kMostUnscored * last_s) return;
   if (!o.run.quiet && scene.settle_s > 0)
-    fmt::print(stderr, "heartservo: settle_s ({} s) is too long for {} frames: scored from {:.3g} s on\n",
-               scene.settle_s, frames, 0.5 * last_s);
+    fmt::print(stderr, "heartservo: the run ends at {:.3g} s, too soon for settle_s ({} s): scored from {:.3g} s on\n",
+               last_s, scene.settle_s, 0.5 * last_s);
   scene.settle_s = 0.5 * last_s;
 }
 

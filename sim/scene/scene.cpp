@@ -25,7 +25,7 @@ void EngineOptions::fields(FieldVisitor& v) {
 void Scene::fields(FieldVisitor& v) {
   v.field({"title", "", "one line for people"}, title);
   v.field({"seed", "", "of every random draw: the same seed gives the same numbers", 0, 2e9}, seed);
-  v.field({"duration_s", "s", "of the run", 0.05, 1e5}, duration_s);
+  v.field({"duration_s", "s", "of a simulated run", 1e-4, 1e5}, duration_s);
   v.field({"settle_s", "s", "frames before this are not scored", 0, 1e4}, settle_s);
   v.group("camera", "the endoscope's camera", camera);
   v.group("recording", "frames from disk instead of the simulated heart", recording);
