@@ -54,8 +54,8 @@ class CommandLine : public testing::Test {
     return std::string(HEARTSERVO_SOURCE_DIR "/scenes/") + name + ".yaml";
   }
 
-  /// A scene of its own: pig_2007 with one text of it replaced.
-  std::string edited_scene(const std::string& from, const std::string& to) const {
+  /// A scene of its own: pig_2007 with texts of it replaced.
+  std::string edited_scene(const std::vector<std::pair<std::string, std::string>>& edits) const {
     std::string text = read_text(scene("pig_2007"));
     const auto swap = [&](const std::string& a, const std::string& b) {
       const auto at = text.find(a);
@@ -63,7 +63,7 @@ class CommandLine : public testing::Test {
       text.replace(at, a.size(), b);
     };
     swap("cameras/sauvee_2007.yaml", HEARTSERVO_SOURCE_DIR "/scenes/cameras/sauvee_2007.yaml");
-    if (!from.empty()) swap(from, to);
+    for (const auto& [from, to] : edits) swap(from, to);
     write_text(folder_ / "scene.yaml", text);
     return "scene.yaml";
   }

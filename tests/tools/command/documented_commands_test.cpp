@@ -69,7 +69,7 @@ class DocumentedCommands : public CommandLine {
 
   // "" or why the line cannot be run here.
   std::string why_not(const std::string& line) const {
-    static const std::regex placeholder("(^|[ =,/:])[A-Z][A-Z_]+([ =,./:…]|$)");
+    static const std::regex placeholder("(^|[ =,:])[A-Z][A-Z_]+([ =,/:]|$)");
     if (line.find("...") != std::string::npos || line.find("…") != std::string::npos) return "has an ellipsis";
     if (std::regex_search(line, placeholder)) return "has a placeholder";
     std::istringstream words(line);
@@ -101,7 +101,7 @@ class DocumentedCommands : public CommandLine {
     static const std::regex own("\\s--(frames|out|settle-s)[ =]\\S+");
     const std::string bare = std::regex_replace(line, own, "");
     const auto end = std::min(bare.find_first_of(">|#&;"), bare.size());
-    return bare.substr(0, end) + " --frames 25 --out documented " + bare.substr(end);
+    return bare.substr(0, end) + " --frames 25 --out documented" + (end < bare.size() ? " " : "") + bare.substr(end);
   }
 
   void expect_works(const std::vector<Line>& lines) const {
@@ -150,7 +150,7 @@ TEST_F(DocumentedCommands, AWrongLineIsNoticed) {
   EXPECT_NE(why_not("heartservo servo FRAMES --roi 1,2,3,4"), "");
   EXPECT_NE(why_not("heartservo servo /nowhere/frames"), "");
   EXPECT_EQ(shortened("heartservo servo a.yaml --out b --frames 3 # why"),
-            "heartservo servo a.yaml --frames 25 --out documented # why");
+            "heartservo servo a.yaml  --frames 25 --out documented # why");
   const auto page = folder_ / "page.md";
   write_text(page, "heartservo no\n```sh\n$ heartservo servo a \\\n  --json\nls\n```\n");
   const auto lines = fenced_lines(page);

@@ -21,8 +21,9 @@ TEST_F(Ending, TheSameSeedGivesTheSameNumbers) {
   EXPECT_EQ(a, b);
   EXPECT_EQ(a["seed"], 3);
   EXPECT_NE(a["residual"], c["residual"]);
-  EXPECT_EQ(summary("track", "3")["trackers"][0]["error_px"], summary("track", "3")["trackers"][0]["error_px"]);
-  EXPECT_NE(summary("track", "3")["trackers"][0]["error_px"], summary("track", "4")["trackers"][0]["error_px"]);
+  const json t = summary("track", "3")["trackers"][0]["error_px"];
+  EXPECT_EQ(t, summary("track", "3")["trackers"][0]["error_px"]);
+  EXPECT_NE(t, summary("track", "4")["trackers"][0]["error_px"]);
 }
 
 TEST_F(Ending, CtrlCLeavesACompleteRunOfWhatWasDone) {
@@ -44,7 +45,7 @@ TEST_F(Ending, CtrlCLeavesACompleteRunOfWhatWasDone) {
 
 TEST_F(Ending, NothingScoredIsNotAPerfectScore) {
   int rounds = 0;
-  const std::string late = edited_scene("settle_s: 2", "settle_s: 15");
+  const std::string late = edited_scene({{"settle_s: 2", "settle_s: 15"}});
   const Outcome o = run({"servo", late, "--json", "--quiet", "--out", "run"}, [&](pid_t child) {
     if (fs::exists(folder_ / "run.partial/incomplete") && ++rounds == 5) ::kill(child, SIGINT);
   });
@@ -56,7 +57,10 @@ TEST_F(Ending, NothingScoredIsNotAPerfectScore) {
 }
 
 TEST_F(Ending, TheGuardLeavesAFlightRecording) {
-  const std::string tight = edited_scene("loop:\n", "loop:\n  guard: {workspace_radius_m: 0.001}\n");
+  // slow heart and breath: the tip leaves its workspace later than the 2 s that the recording holds
+  const std::string tight =
+      edited_scene({{"motion:\n", "motion:\n  heart_rate_hz: 0.6\n  respiration_rate_hz: 0.15\n"},
+                    {"loop:\n", "loop:\n  guard: {workspace_radius_m: 0.0075, max_step_m: 0.001}\n"}});
   const Outcome o = run({"servo", tight, "--json", "--out", "run"});
   EXPECT_EQ(o.code, 5) << o.err;
   EXPECT_EQ(o.error_lines(), 1u) << o.err;
@@ -71,10 +75,8 @@ TEST_F(Ending, TheGuardLeavesAFlightRecording) {
   ASSERT_GT(flight.rows(), 0u);
   EXPECT_EQ(all.rows(), j["frames"].get<std::size_t>());
   EXPECT_EQ(flight.time_s().back(), all.time_s().back());
-  EXPECT_EQ(flight.time_s().front(), std::max(0.0, flight.time_s().front()));
-  EXPECT_LE(flight.time_s().back() - flight.time_s().front(), 2.0 + 1e-9);
-  EXPECT_EQ(flight.rows(), std::min<std::size_t>(all.rows(), 251));
-  EXPECT_FALSE(fs::exists(folder_ / "good/flight.csv"));
+  EXPECT_NEAR(flight.time_s().back() - flight.time_s().front(), 2, 0.009);
+  EXPECT_GT(all.rows(), flight.rows());
 }
 
 TEST_F(Ending, AForeignFolderIsLeftAlone) {
