@@ -1,4 +1,6 @@
 // What a run leaves behind: the documented files, the keys of summary.json, the columns of frames.csv.
+#include <fmt/format.h>
+
 #include <set>
 #include <sstream>
 
@@ -113,8 +115,7 @@ TEST_F(RunFolderContract, Render) {
   expect_numbers(j, {"/seed", "/frame_rate_hz", "/width", "/height"});
   EXPECT_GT(read_text(folder_ / "run/camera.yaml").size(), 50u);
   for (int i = 0; i < 5; ++i) {
-    const cv::Mat picture =
-        cv::imread(folder_ / ("run/frames/00000" + std::to_string(i) + ".png"), cv::IMREAD_UNCHANGED);
+    const cv::Mat picture = cv::imread(folder_ / fmt::format("run/frames/{:06d}.png", i), cv::IMREAD_UNCHANGED);
     EXPECT_EQ(picture.cols, j["width"].get<int>());
     EXPECT_EQ(picture.type(), CV_8UC1);
   }
