@@ -101,7 +101,8 @@ Report servo_report(const json& j, const TimeTable& table, std::vector<ReportPic
   if (!j["stop_reason"].is_null()) report.notices.push_back("Safety stop: " + j["stop_reason"].get<std::string>());
   if (j["interrupted"].get<bool>()) report.notices.push_back("Ended early by Ctrl-C.");
   report.plots = metric ? metric_plots() : pixel_plots();
-  report.plots.push_back({"Tracking quality", "", {{"target", "track/quality"}, {"tool marker", "marker/quality"}}, 1});
+  report.plots.push_back(
+      {"Tracking quality", "%", {{"target", "track/quality"}, {"tool marker", "marker/quality"}}, 100});
   report.plots.push_back(
       {"Computing time", "ms", {{"trackers", "timing/track_ms"}, {"whole chain", "timing/chain_ms"}}, 1});
   report.pictures = std::move(pictures);

@@ -14,7 +14,7 @@ constexpr int kPointsPerSide = 40;
 constexpr double kFromCorner = 0.12;   // of the side: nearer to a corner the other side's edge disturbs
 constexpr double kProfileStep = 0.25;  // px
 constexpr double kSmoothing = 1.0;     // px; large enough for the pixel grid not to matter, small against the rim
-constexpr int kRadius = 4;             // px, of the smoothing
+constexpr int kRadius = 5;             // px, of the smoothing
 constexpr double kSmallestRise = 8;    // grey / px
 
 using Eigen::Vector2d;
@@ -24,15 +24,19 @@ using Eigen::Vector2d;
 double rise_at(const cv::Mat& grey, const Vector2d& p, const Vector2d& outward) {
   const int u0 = static_cast<int>(std::lround(p.x())), v0 = static_cast<int>(std::lround(p.y()));
   if (u0 < kRadius || v0 < kRadius || u0 + kRadius >= grey.cols || v0 + kRadius >= grey.rows) return NAN;
-  double weight = 0, rise = 0;
+  double weight = 0, lever = 0, grey_sum = 0, rise = 0;
   for (int v = v0 - kRadius; v <= v0 + kRadius; ++v)
     for (int u = u0 - kRadius; u <= u0 + kRadius; ++u) {
       const Vector2d d(u - p.x(), v - p.y());
       const double w = std::exp(-d.squaredNorm() / (2 * kSmoothing * kSmoothing));
+      const double g = static_cast<double>(grey.at<std::uint8_t>(v, u)), d_out = d.dot(outward);
       weight += w;
-      rise += w * d.dot(outward) / (kSmoothing * kSmoothing) * static_cast<double>(grey.at<std::uint8_t>(v, u));
+      lever += w * d_out;
+      grey_sum += w * g;
+      rise += w * d_out * g;
     }
-  return rise / weight;
+  // the window is centred on a pixel, not on p: without the second term even a flat picture would rise
+  return (rise - lever * grey_sum / weight) / (weight * kSmoothing * kSmoothing);
 }
 
 // Where the grey level rises fastest on the way outwards through `p`, in px from p; none if nowhere clearly.

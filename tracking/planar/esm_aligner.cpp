@@ -11,7 +11,8 @@ namespace heartservo::tracking {
 namespace {
 
 constexpr int kSmallestSide = 9;        // points; a coarser template says nothing
-constexpr double kNear_px = 0.05;       // from here on, finer sampling pays; a coarse level need not come nearer
+constexpr double kNear_px = 0.1;        // where bilinear sampling has done its part; twice that a level up
+constexpr int kLastIterations = 5;      // with cubic sampling
 constexpr double kSmallestShare = 0.3;  // of the template's points must be in the picture
 
 class EsmAligner final : public PatchAligner {
@@ -43,46 +44,40 @@ class EsmAligner final : public PatchAligner {
     Alignment a = start;
     a.iterations = 0;
     coarsest = std::min({coarsest, picture.levels() - 1, static_cast<int>(patches_.size()) - 1});
+    // Bilinear sampling to come near, cubic for the last steps. A coarse level has too few points for the perspective
+    // terms: affine is enough to come near.
     for (int level = coarsest; level >= 0; --level)
-      // A coarse level has too few points for the perspective terms: affine is enough to come near.
-      if (!align_level(picture.level(level), level, static_cast<int>(level == 0 ? model : MotionModel::AFFINE), a))
+      if (!descend(picture.level(level), level, Interpolation::LINEAR, level > 0 ? MotionModel::AFFINE : model,
+                   options_.max_iterations, kNear_px * (1 << level), a))
         return a;
+    a.converged = descend(picture.level(0), 0, Interpolation::CUBIC, model, kLastIterations, options_.step_px, a);
     return a;
   }
 
  private:
-  bool align_level(const PyramidLevel& picture, int level, int parameters, Alignment& a) {
+  // Iterates until no corner moves by more than `step_px`; false when there is nothing to align with. What the last
+  // pass saw is what the alignment is judged by: the step after it is too small to matter.
+  bool descend(const PyramidLevel& picture, int level, Interpolation interpolation, MotionModel model, int iterations,
+               double step_px, Alignment& a) {
     const Patch& patch = patches_[static_cast<std::size_t>(level)];
     const double usable = usable_[static_cast<std::size_t>(level)];
     a.converged = false;
-    // Bilinear sampling to come near, cubic for the last steps at full resolution.
-    Interpolation interpolation = Interpolation::LINEAR;
-    bool done = false;
-    for (int i = 0; i < options_.max_iterations && !done; ++i, ++a.iterations) {
-      const AlignmentPass pass = run_pass(picture, patch, interpolation, a);
+    for (int i = 0; i < iterations; ++i, ++a.iterations) {
+      warp(picture, camera_, a.G_plane_patch, patch, interpolation, buffers_.grey.data(), buffers_.inside.data());
+      const AlignmentPass pass = esm_pass(patch, a.gain, a.bias, buffers_);
       if (pass.points < kSmallestShare * usable) return false;
       Vector10d step;
-      if (!solve(pass, parameters, step)) return false;
+      if (!solve(pass, static_cast<int>(model), step)) return false;
       const Eigen::Matrix3d M = sl3_exp(step.head<8>());
       a.G_plane_patch = to_sl3(a.G_plane_patch * M);
       a.gain += step[8];
       a.bias += step[9];
       if (!a.G_plane_patch.allFinite() || !(a.gain > 0.05 && a.gain < 20)) return false;
-      const double moved_px = corner_step(M) * half_side_px_;
-      if (level == 0 && interpolation == Interpolation::LINEAR)
-        interpolation = moved_px < kNear_px ? Interpolation::CUBIC : Interpolation::LINEAR;
-      else
-        done = moved_px < (level == 0 ? options_.step_px : kNear_px * (1 << level));
+      const bool last = corner_step(M) * half_side_px_ < step_px || i + 1 == iterations;
+      if (last && interpolation == Interpolation::CUBIC) judge(patch, pass, usable, a);
+      if (last) break;
     }
-    if (level == 0) judge(picture, patch, usable, a);
-    a.converged = true;
     return true;
-  }
-
-  AlignmentPass run_pass(const PyramidLevel& picture, const Patch& patch, Interpolation interpolation,
-                         const Alignment& a) {
-    warp(picture, camera_, a.G_plane_patch, patch, interpolation, buffers_.grey.data(), buffers_.inside.data());
-    return esm_pass(patch, a.gain, a.bias, buffers_);
   }
 
   // Solves for the first `parameters` of SL(3) and the two of the illumination.
@@ -111,8 +106,7 @@ class EsmAligner final : public PatchAligner {
     return largest;
   }
 
-  void judge(const PyramidLevel& picture, const Patch& patch, double usable, Alignment& a) {
-    const AlignmentPass pass = run_pass(picture, patch, Interpolation::CUBIC, a);
+  void judge(const Patch& patch, const AlignmentPass& pass, double usable, Alignment& a) const {
     a.noise_grey = pass.noise_grey;
     a.visible = usable > 0 ? pass.weight / usable : 0;
     const Correlation c = correlation(patch, buffers_);

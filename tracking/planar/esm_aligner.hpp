@@ -9,7 +9,7 @@ namespace heartservo::tracking {
 
 struct EsmOptions {
   int max_iterations = 15;  ///< per pyramid level
-  double step_px = 2e-3;    ///< stop when no corner moves further than this
+  double step_px = 0.01;    ///< stop when no corner moves further than this
 };
 
 std::unique_ptr<PatchAligner> make_esm_aligner(const EsmOptions& options);

@@ -17,6 +17,7 @@ namespace {
 constexpr double kSmallestSide = 12;        // px
 constexpr double kSmallestGradient = 1.5;   // grey/px, RMS in the direction with the least texture
 constexpr double kVisibleShare = 0.5;       // a template that fits on fewer points loses quality
+constexpr double kSmallSurprise = 1.2;      // px between foreseen and found place that one level copes with
 constexpr double kLargestGrowth = 1.6;      // of the area, between two frames
 constexpr double kLargestScale = 2.5;       // of the side, against the reference
 constexpr double kLikelyPerspective = 1.4;  // a 10 mm region 45 mm away, tilted by 60 degrees, has 1.21
@@ -62,13 +63,14 @@ std::string PlanarTracker::start(const Frame& frame, const Quad& corners) {
   reference_ = Alignment{};
   reference_.G_plane_patch = to_sl3(homography_between(patch_corners_, plane));
   if (!reference_.G_plane_patch.allFinite()) return "the region's corners cannot be undistorted by this camera";
-  build_pyramid(frame.grey, corners, corners, 16);
+  build_pyramid(frame.grey, corners, corners, 16, options_.levels);
   aligner_->learn(pyramid_, camera_, reference_.G_plane_patch, static_cast<int>(std::lround(side_x)),
                   static_cast<int>(std::lround(side_y)));
   if (std::string why = unfit_texture(); !why.empty()) return why;
   last_ = reference_;
   last_time_s_ = frame.time_s;
   plane_velocity_.setZero();
+  surprise_px_ = INFINITY;
   started_ = locked_ = true;
   return "";
 }
@@ -140,15 +142,22 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
   const Quad last = corners_of(last_.G_plane_patch);
   Alignment predicted = last_;
   predicted.G_plane_patch = shifted(last_.G_plane_patch, plane_velocity_ * (frame.time_s - last_time_s_));
-  build_pyramid(frame.grey, last, corners_of(predicted.G_plane_patch), 0.35 * side_px_);
-  const int coarsest = pyramid_.levels() - 1;
-  Candidate best = try_from(predicted, coarsest, last);
-  if (best.quality < options_.ok_quality)
-    if (Candidate still = try_from(last_, coarsest, last); still.quality > best.quality) best = still;
+  const Quad expected = corners_of(predicted.G_plane_patch);
+  // A motion that was foreseen well needs no coarse levels.
+  const int needed = surprise_px_ < kSmallSurprise ? 1 : surprise_px_ < 3 * kSmallSurprise ? 2 : options_.levels;
+  build_pyramid(frame.grey, last, expected, 0.35 * side_px_, std::min(needed, options_.levels));
+  Candidate best = try_from(predicted, needed - 1, last);
   if (best.quality < options_.ok_quality) {
-    build_pyramid(frame.grey, last, last, options_.search_px + 0.35 * side_px_);
+    build_pyramid(frame.grey, last, expected, 0.35 * side_px_, options_.levels);
+    for (const Alignment* start : {&predicted, &last_})
+      if (Candidate c = try_from(*start, options_.levels - 1, last); c.quality > best.quality) best = c;
+  }
+  if (best.quality < options_.ok_quality) {
+    build_pyramid(frame.grey, last, last, options_.search_px + 0.35 * side_px_, options_.levels);
     if (Candidate found = search(last, options_.search_px, 3); found.quality > best.quality) best = found;
   }
+  surprise_px_ =
+      best.quality > 0 ? (centre(corners_of(best.alignment.G_plane_patch)) - centre(expected)).norm() : INFINITY;
   return best;
 }
 
@@ -180,7 +189,7 @@ PlanarTracker::Candidate PlanarTracker::search(const Quad& around, double radius
   return best;
 }
 
-void PlanarTracker::build_pyramid(const cv::Mat& grey, const Quad& a, const Quad& b, double margin_px) {
+void PlanarTracker::build_pyramid(const cv::Mat& grey, const Quad& a, const Quad& b, double margin_px, int levels) {
   double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
   for (const Quad* quad : {&a, &b})
     for (const auto& c : *quad) {
@@ -189,11 +198,11 @@ void PlanarTracker::build_pyramid(const cv::Mat& grey, const Quad& a, const Quad
       top = std::min(top, c.y()), bottom = std::max(bottom, c.y());
     }
   // Four pixels of the coarsest level keep the smoothing of the pyramid away from the window's border.
-  const double margin = margin_px + 4.0 * (1 << (options_.levels - 1));
+  const double margin = margin_px + 4.0 * (1 << (levels - 1));
   const auto clip = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
   const cv::Point from(clip(left - margin), clip(top - margin)),
       to(clip(right + margin + 1), clip(bottom + margin + 1));
-  pyramid_.build(grey, cv::Rect(from, to), options_.levels);
+  pyramid_.build(grey, cv::Rect(from, to), levels);
 }
 
 void PlanarTracker::believe(const Candidate& candidate, double time_s) {
@@ -203,8 +212,10 @@ void PlanarTracker::believe(const Candidate& candidate, double time_s) {
   const double dt = time_s - last_time_s_;
   if (locked_ && dt > 0)
     plane_velocity_ = (centre_of(candidate.alignment) - centre_of(last_)) / dt;
-  else
+  else {
     plane_velocity_.setZero();
+    surprise_px_ = INFINITY;  // nothing is foreseen yet
+  }
   last_ = candidate.alignment;
   last_time_s_ = time_s;
   locked_ = true;

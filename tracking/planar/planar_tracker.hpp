@@ -57,7 +57,7 @@ class PlanarTracker final : public TargetTracker {
   Candidate follow(const Frame& frame);
   Candidate search(const Quad& around, double radius_px, int candidates);
   Candidate reacquire(const cv::Mat& grey);
-  void build_pyramid(const cv::Mat& grey, const Quad& a, const Quad& b, double margin_px);
+  void build_pyramid(const cv::Mat& grey, const Quad& a, const Quad& b, double margin_px, int levels);
   void believe(const Candidate& candidate, double time_s);
 
   std::unique_ptr<PatchAligner> aligner_;
@@ -70,6 +70,7 @@ class PlanarTracker final : public TargetTracker {
   Alignment last_;            // last believed
   double last_time_s_ = 0;
   Eigen::Vector2d plane_velocity_ = Eigen::Vector2d::Zero();  // of the centre, plane units per s
+  double surprise_px_ = 0;  // how far the last frame's place was from the foreseen one
   bool started_ = false, locked_ = false;
   int width_ = 0, height_ = 0;
   double side_px_ = 0;
