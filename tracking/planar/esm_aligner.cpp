@@ -43,6 +43,7 @@ class EsmAligner final : public PatchAligner {
   Alignment align(const ImagePyramid& picture, const Alignment& start, int coarsest, MotionModel model) override {
     Alignment a = start;
     a.iterations = 0;
+    moved_.setZero();
     coarsest = std::min({coarsest, picture.levels() - 1, static_cast<int>(patches_.size()) - 1});
     // Bilinear sampling to come near, cubic for the last steps. A coarse level has too few points for the perspective
     // terms: affine is enough to come near.
@@ -68,6 +69,7 @@ class EsmAligner final : public PatchAligner {
       if (pass.points < kSmallestShare * usable) return false;
       Vector10d step;
       if (!solve(pass, static_cast<int>(model), step)) return false;
+      moved_ += step;
       const Eigen::Matrix3d M = sl3_exp(step.head<8>());
       a.G_plane_patch = to_sl3(a.G_plane_patch * M);
       a.gain += step[8];
@@ -80,10 +82,18 @@ class EsmAligner final : public PatchAligner {
     return true;
   }
 
-  // Solves for the first `parameters` of SL(3) and the two of the illumination.
-  static bool solve(const AlignmentPass& pass, int parameters, Vector10d& step) {
+  // Solves for the first parameters of SL(3) and the two of the illumination. The shape is tied to that of the start,
+  // as loosely as it may change between two frames, weighed against the noise: where texture or light leave it open, it
+  // stays instead of running away (a maximum a posteriori estimate).
+  bool solve(const AlignmentPass& pass, int parameters, Vector10d& step) const {
     Matrix10d A = pass.JtJ;
     Vector10d b = pass.Jtr;
+    const double variance = std::max(1.0, pass.noise_grey * pass.noise_grey);
+    for (int k = 2; k < 8; ++k) {
+      const double sigma = k < 6 ? options_.affine_sigma : options_.perspective_sigma;
+      A(k, k) += variance / (sigma * sigma);
+      b(k) += variance / (sigma * sigma) * moved_[k];
+    }
     for (int k = parameters; k < 8; ++k) {
       A.row(k).setZero();
       A.col(k).setZero();
@@ -119,6 +129,7 @@ class EsmAligner final : public PatchAligner {
   std::vector<Patch> patches_;
   std::vector<double> usable_;
   AlignmentBuffers buffers_;
+  Vector10d moved_ = Vector10d::Zero();  // from the start of this alignment, to first order
   double half_side_px_ = 1;
 };
 

@@ -19,13 +19,21 @@ constexpr std::size_t kMedianPoints = 512;  // enough for a scale estimate
 using Block = std::array<std::array<float, kBlock>, kRows>;
 
 HEARTSERVO_SIMD void residual_pass(const float* __restrict grey, const float* __restrict inside,
-                                   const float* __restrict reference, const float* __restrict usable, std::size_t n,
-                                   float gain, float bias, float* __restrict residual, float* __restrict weight) {
+                                   const float* __restrict reference, std::size_t n, float gain, float bias,
+                                   float* __restrict residual, float* __restrict clear) {
 #pragma omp simd
   for (std::size_t i = 0; i < n; ++i) {
     residual[i] = gain * grey[i] + bias - reference[i];
-    weight[i] = usable[i] * inside[i] * (grey[i] < kSaturatedGrey ? 1.0F : 0.0F);
+    clear[i] = inside[i] * (grey[i] < kSaturatedGrey ? 1.0F : 0.0F);
   }
+}
+
+// A point counts when it and its four neighbours, which its gradient is made of, are clear of glare.
+HEARTSERVO_SIMD void weight_row(const float* __restrict clear, const float* __restrict usable, std::ptrdiff_t stride,
+                                std::ptrdiff_t n, float* __restrict weight) {
+#pragma omp simd
+  for (std::ptrdiff_t i = 0; i < n; ++i)
+    weight[i] = usable[i] * clear[i] * clear[i - 1] * clear[i + 1] * clear[i - stride] * clear[i + stride];
 }
 
 HEARTSERVO_SIMD float tukey_pass(const float* __restrict residual, float* __restrict weight, std::size_t n,
@@ -114,7 +122,7 @@ float robust_noise(AlignmentBuffers& b, std::size_t n) {
 }  // namespace
 
 void AlignmentBuffers::resize(std::size_t n) {
-  for (auto* v : {&grey, &inside, &residual, &weight, &sample}) v->resize(std::max(v->size(), n));
+  for (auto* v : {&grey, &inside, &clear, &residual, &weight, &sample}) v->resize(std::max(v->size(), n));
 }
 
 AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBuffers& b) {
@@ -122,8 +130,14 @@ AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBu
   pass.JtJ.setZero();
   pass.Jtr.setZero();
   const std::size_t n = patch.size();
-  residual_pass(b.grey.data(), b.inside.data(), patch.grey.data(), patch.usable.data(), n, static_cast<float>(gain),
-                static_cast<float>(bias), b.residual.data(), b.weight.data());
+  residual_pass(b.grey.data(), b.inside.data(), patch.grey.data(), n, static_cast<float>(gain),
+                static_cast<float>(bias), b.residual.data(), b.clear.data());
+  const std::ptrdiff_t stride = patch.width;
+  std::fill_n(b.weight.begin(), n, 0.0F);
+  for (std::ptrdiff_t row = 1; row + 1 < patch.height; ++row) {
+    const std::ptrdiff_t i = row * stride + 1;
+    weight_row(b.clear.data() + i, patch.usable.data() + i, stride, stride - 2, b.weight.data() + i);
+  }
   for (std::size_t i = 0; i < n; ++i) pass.points += static_cast<double>(b.weight[i]);
   const float noise = robust_noise(b, n);
   pass.noise_grey = static_cast<double>(noise);

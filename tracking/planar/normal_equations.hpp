@@ -13,7 +13,7 @@ using Vector10d = Eigen::Matrix<double, 10, 1>;
 
 /// Buffers of one alignment, kept between frames. Sized for the largest level.
 struct AlignmentBuffers {
-  std::vector<float> grey, inside, residual, weight, sample;
+  std::vector<float> grey, inside, clear, residual, weight, sample;
   void resize(std::size_t n);
 };
 

@@ -118,7 +118,16 @@ Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::M
       const std::size_t i = static_cast<std::size_t>(row * width + column), w = static_cast<std::size_t>(width);
       patch.gradient_x[i] = half * (patch.grey[i + 1] - patch.grey[i - 1]);
       patch.gradient_y[i] = half * (patch.grey[i + w] - patch.grey[i - w]);
-      patch.usable[i] = inside[i] * (patch.grey[i] < kSaturatedGrey ? 1.0F : 0.0F);
+      patch.usable[i] = inside[i];
+    }
+  // Glare spoils the gradients and the blurred rim around it too.
+  constexpr int kRim = 2;
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column) {
+      if (patch.grey[static_cast<std::size_t>(row * width + column)] < kSaturatedGrey) continue;
+      for (int v = std::max(0, row - kRim); v <= std::min(height - 1, row + kRim); ++v)
+        for (int u = std::max(0, column - kRim); u <= std::min(width - 1, column + kRim); ++u)
+          patch.usable[static_cast<std::size_t>(v * width + u)] = 0;
     }
   return patch;
 }

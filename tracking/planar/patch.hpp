@@ -26,7 +26,7 @@ struct Patch {
 };
 
 /// Grey values above this are glare or clipping and say nothing about the tissue.
-inline constexpr float kSaturatedGrey = 250;
+inline constexpr float kSaturatedGrey = 240;
 
 enum class Interpolation {
   LINEAR,  ///< bilinear: fast, to come near

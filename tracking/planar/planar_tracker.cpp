@@ -18,6 +18,7 @@ constexpr double kSmallestSide = 12;        // px
 constexpr double kSmallestGradient = 1.5;   // grey/px, RMS in the direction with the least texture
 constexpr double kVisibleShare = 0.5;       // a template that fits on fewer points loses quality
 constexpr double kSmallSurprise = 1.2;      // px between foreseen and found place that one level copes with
+constexpr double kSuddenFall = 0.06;        // of the quality, against the last frames
 constexpr double kLargestGrowth = 1.6;      // of the area, between two frames
 constexpr double kLargestScale = 2.5;       // of the side, against the reference
 constexpr double kLikelyPerspective = 1.4;  // a 10 mm region 45 mm away, tilted by 60 degrees, has 1.21
@@ -71,6 +72,7 @@ std::string PlanarTracker::start(const Frame& frame, const Quad& corners) {
   last_time_s_ = frame.time_s;
   plane_velocity_.setZero();
   surprise_px_ = INFINITY;
+  usual_quality_ = 1;
   started_ = locked_ = true;
   return "";
 }
@@ -147,12 +149,14 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
   const int needed = surprise_px_ < kSmallSurprise ? 1 : surprise_px_ < 3 * kSmallSurprise ? 2 : options_.levels;
   build_pyramid(frame.grey, last, expected, 0.35 * side_px_, std::min(needed, options_.levels));
   Candidate best = try_from(predicted, needed - 1, last);
-  if (best.quality < options_.ok_quality) {
+  // A sudden fall of the quality may be a wrong place that happens to look alike: look further before believing it.
+  const double wanted = std::max(options_.ok_quality, usual_quality_ - kSuddenFall);
+  if (best.quality < wanted) {
     build_pyramid(frame.grey, last, expected, 0.35 * side_px_, options_.levels);
     for (const Alignment* start : {&predicted, &last_})
       if (Candidate c = try_from(*start, options_.levels - 1, last); c.quality > best.quality) best = c;
   }
-  if (best.quality < options_.ok_quality) {
+  if (best.quality < wanted) {
     build_pyramid(frame.grey, last, last, options_.search_px + 0.35 * side_px_, options_.levels);
     if (Candidate found = search(last, options_.search_px, 3); found.quality > best.quality) best = found;
   }
@@ -241,7 +245,9 @@ Track PlanarTracker::track(const Frame& frame) {
     if (found.quality >= options_.uncertain_quality) {
       track.reacquired = !was_locked;
       believe(found, frame.time_s);
-      track.state = found.quality >= options_.ok_quality ? TrackState::OK : TrackState::UNCERTAIN;
+      const double wanted = std::max(options_.ok_quality, usual_quality_ - 2 * kSuddenFall);
+      track.state = found.quality >= wanted ? TrackState::OK : TrackState::UNCERTAIN;
+      usual_quality_ += (track.state == TrackState::OK ? 0.2 : 0.05) * (found.quality - usual_quality_);
       track.quality = std::min(1.0, found.quality);
       track.iterations = found.alignment.iterations;
       track.noise_grey = found.alignment.noise_grey;

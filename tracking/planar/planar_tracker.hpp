@@ -70,7 +70,8 @@ class PlanarTracker final : public TargetTracker {
   Alignment last_;            // last believed
   double last_time_s_ = 0;
   Eigen::Vector2d plane_velocity_ = Eigen::Vector2d::Zero();  // of the centre, plane units per s
-  double surprise_px_ = 0;  // how far the last frame's place was from the foreseen one
+  double surprise_px_ = 0;    // how far the last frame's place was from the foreseen one
+  double usual_quality_ = 1;  // of the last frames
   bool started_ = false, locked_ = false;
   int width_ = 0, height_ = 0;
   double side_px_ = 0;
