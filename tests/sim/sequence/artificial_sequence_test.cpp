@@ -55,19 +55,23 @@ TEST(ArtificialSequence, TruthHoldsToThreeThousandthsOfAPixel) {
     options.noise_grey = 0;
     ArtificialSequence sequence(options, base);
     double worst = 0, sum = 0;
+    Eigen::Vector2d bias(0, 0);
     tracking::Frame frame;
     for (std::size_t k = 0; k < 40; ++k) {
       ASSERT_TRUE(sequence.next(frame));
       const Eigen::Matrix3d H = sequence.H_current_reference(k);
       for (const auto& place : places) {
         const Eigen::Vector2d truth = (H * place.homogeneous()).hnormalized();
-        const double error = (gravity(frame.grey, truth) - truth).norm();
+        const Eigen::Vector2d off = gravity(frame.grey, truth) - truth;
+        const double error = off.norm();
+        bias += off / 640;
         worst = std::max(worst, error), sum += error / 640;
       }
     }
     // Whole grey levels alone make about 0.004 px in one dot.
     EXPECT_LT(worst, 0.02) << name;
     EXPECT_LT(sum, 0.006) << name;
+    EXPECT_LT(bias.norm(), 5e-4) << name;
   }
 }
 
@@ -117,7 +121,8 @@ TEST(PictureSampler, MirrorsBeyondTheBorderAndStaysFinite) {
   sampler.row(Eigen::Matrix3d::Identity(), -160, 20, 400, row);
   for (int u = -60; u < 120; ++u) {
     const double mirrored = u < 0 ? -u : u > 63 ? 126 - u : u;
-    EXPECT_NEAR(row[u + 160], mirrored, u == 0 || u == 63 ? 0.3 : 1e-3) << u;
+    const bool fold = std::abs(u) <= 1 || std::abs(u - 63) <= 1;  // Catmull-Rom rounds the ramp's turn
+    EXPECT_NEAR(row[u + 160], mirrored, fold ? 0.3 : 1e-3) << u;
   }
   for (const float value : row) EXPECT_TRUE(value > -1 && value < 65);
 }
@@ -204,11 +209,12 @@ TEST(ArtificialSequence, KeepsTheRegionInThePicture) {
 TEST(ArtificialSequence, LaysAPatchOverTheSimulatedHeart) {
   SequenceOptions options = SequenceOptions::named("table5");
   options.side_px = 40;
+  options.frames = 30;
   const auto white = std::make_shared<BasePicture>(BasePicture{cv::Mat(1664, 1664, CV_32FC1, cv::Scalar(200)), 2});
   ArtificialSequence sequence(options, white);
   tracking::Frame frame, before;
   double changed = 0;
-  for (std::size_t k = 0; k < 100; ++k) {
+  for (std::size_t k = 0; k < 30; ++k) {
     ASSERT_TRUE(sequence.next(frame));
     const Eigen::Vector2d c = tracking::centre(sequence.corners(k));
     for (const double x : {-24.0, 0.0, 24.0})
@@ -218,7 +224,7 @@ TEST(ArtificialSequence, LaysAPatchOverTheSimulatedHeart) {
     before = frame;
   }
   EXPECT_FALSE(sequence.next(frame));
-  EXPECT_GT(changed / 99, 0.3) << "the heart beats under the patch";
+  EXPECT_GT(changed / 29, 0.3) << "the heart beats under the patch";
 }
 
 TEST(ArtificialSequence, TakesRecordedFramesAsBackgroundAndPicturesAsTexture) {

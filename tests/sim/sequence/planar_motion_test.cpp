@@ -53,8 +53,8 @@ TEST(PlanarMotion, StatesItsFastestFrames) {
     for (int k = 0; k < 150; ++k) speed = std::max(speed, (view(name, k + 1).shift_px - view(name, k).shift_px).norm());
     return speed;
   };
-  EXPECT_NEAR(fastest("d"), 14.3, 0.1);
-  EXPECT_NEAR(fastest("fast"), 24.9, 0.1);
+  EXPECT_NEAR(fastest("d"), 14.4, 0.06);
+  EXPECT_NEAR(fastest("fast"), 24.9, 0.06);
   EXPECT_NEAR(fastest("table5"), 2.5, 0.02);
 }
 
