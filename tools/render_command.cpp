@@ -1,10 +1,13 @@
-// heartservo render: writes a scene's frames and truth, for other programs and for tests of trackers.
+// heartservo render: writes the frames and truth of a scene or an artificial sequence, for other programs and for tests
+// of trackers.
 #include <fmt/format.h>
 
 #include <opencv2/imgcodecs.hpp>
 
 #include "servo/loop/loop_record.hpp"
+#include "sim/sequence/sequence_table.hpp"
 #include "sim/table/table.hpp"
+#include "tools/artificial.hpp"
 #include "tools/command.hpp"
 #include "tools/corner_truth.hpp"
 #include "tools/interrupt.hpp"
@@ -20,7 +23,16 @@ namespace {
 
 struct RenderOptions {
   RunOptions run;
+  ArtificialChoice artificial;
   bool with_tool = false;
+};
+
+/// What is rendered, be it a scene or an artificial sequence.
+struct Rendering {
+  std::unique_ptr<sim::Table> table;
+  std::string title, config;
+  nlohmann::json facts;  ///< its entries in summary.json
+  bool metric = true;    ///< has a camera and a place in space
 };
 
 void write_png(const std::filesystem::path& file, const cv::Mat& grey) {
@@ -32,18 +44,49 @@ void write_png(const std::filesystem::path& file, const cv::Mat& grey) {
   if (!written) throw ConfigError(file.string() + ": cannot be written; check space and permissions");
 }
 
-int run_render(const RenderOptions& o) {
+Rendering scene_rendering(const RenderOptions& o) {
   if (o.run.source.empty() || !is_scene(o.run.source))
-    throw ConfigError("SCENE is missing: give a scene file such as scenes/pig_2007.yaml");
+    throw ConfigError("SCENE is missing: give a scene file such as scenes/pig_2007.yaml, or --artificial NAME");
   sim::Scene scene = scene_for(o.run, {});
   if (scene.is_recorded()) throw ConfigError(o.run.source + ": frames from disk need no rendering");
   scene.show_tool = o.with_tool;
   if (scene.settle_s >= scene.duration_s) scene.settle_s = 0;
   sim::require_valid(scene, o.run.source);
-  const auto table = sim::make_table(scene);
+  return {sim::make_table(scene),
+          scene.title,
+          config_text(scene, "render"),
+          {{"scene", stem_of(o.run.source)}, {"seed", scene.seed}}};
+}
+
+Rendering artificial_rendering(const RenderOptions& o) {
+  if (o.with_tool) throw ConfigError("--with-tool is for scenes; an artificial sequence has no tool");
+  const sim::SequenceOptions options = sequence_for(o.artificial, o.run);
+  Rendering r{sim::make_sequence_table(options), "", config_text(options, {}, "render"), {}, false};
+  r.title = r.table->frames().description();
+  r.facts = {{"scene", o.run.source},
+             {"seed", options.seed},
+             {"texture", options.texture},
+             {"side_px", options.side_px},
+             {"place", options.place}};
+  return r;
+}
+
+std::vector<ReportPlot> plots_of(const Rendering& r) {
+  if (r.metric)
+    return {{"True position of the target", "mm", {{"x", "truth/x_m"}, {"y", "truth/y_m"}, {"z", "truth/z_m"}}, 1e3}};
+  return {{"True place of the region's first corner",
+           "px",
+           {{"horizontal", "truth/corner0/u_px"}, {"vertical", "truth/corner0/v_px"}}}};
+}
+
+int run_render(RenderOptions o) {
+  if (o.artificial) o.run.source = artificial_source(o.artificial, o.run);
+  const Rendering rendering = o.artificial ? artificial_rendering(o) : scene_rendering(o);
+  const auto& table = rendering.table;
   const std::size_t expected = table->frames().frame_count().value_or(0);
   auto columns = corner_columns();
-  for (const char* name : {"truth/x_m", "truth/y_m", "truth/z_m"}) columns.emplace_back(name);
+  if (rendering.metric)
+    for (const char* name : {"truth/x_m", "truth/y_m", "truth/z_m"}) columns.emplace_back(name);
   TimeTable truth(columns, rows_ahead(expected));
   RunFolder folder(run_path(o.run, "render"));
   std::filesystem::create_directories(folder.file("frames"));
@@ -58,36 +101,31 @@ int run_render(const RenderOptions& o) {
       const auto sample = table->truth(record);
       std::vector<double> row{record.frame.time_s};
       for (const auto& corner : *sample.corners_px) row.insert(row.end(), {corner.x(), corner.y()});
-      row.insert(row.end(), {sample.target->x(), sample.target->y(), sample.target->z()});
+      if (sample.target) row.insert(row.end(), {sample.target->x(), sample.target->y(), sample.target->z()});
       truth.append(row);
       if (first.empty()) first = record.frame.grey.clone();
       progress.update(truth.rows());
     }
   }
-  const nlohmann::json summary{{"command", "render"},
-                               {"version", HEARTSERVO_VERSION},
-                               {"scene", stem_of(o.run.source)},
-                               {"seed", scene.seed},
-                               {"frames", truth.rows()},
-                               {"frame_rate_hz", scene.camera.frame_rate_hz},
-                               {"width", table->camera().width},
-                               {"height", table->camera().height},
-                               {"interrupted", interrupted}};
+  const cv::Size size = table->frames().size();
+  nlohmann::json summary{{"command", "render"},       {"version", HEARTSERVO_VERSION},
+                         {"frames", truth.rows()},    {"frame_rate_hz", table->frames().frame_rate_hz()},
+                         {"width", size.width},       {"height", size.height},
+                         {"interrupted", interrupted}};
+  summary.update(rendering.facts);
   truth.write_csv(folder.file("truth.csv"));
-  tracking::write_ros_camera(table->camera(), folder.file("camera.yaml").string(), "endoscope");
-  const std::string config = config_text(scene, "render");
-  folder.write("config.yaml", config);
+  if (rendering.metric) tracking::write_ros_camera(table->camera(), folder.file("camera.yaml").string(), "endoscope");
+  folder.write("config.yaml", rendering.config);
   folder.write("summary.json", summary.dump(2) + "\n");
   Report report;
   report.title = "render " + stem_of(o.run.source);
-  report.headline = fmt::format("{} frames of {}, with truth.", truth.rows(), scene.title);
+  report.headline = fmt::format("{} frames of {}, with truth.", truth.rows(), rendering.title);
   report.headline_number = std::to_string(truth.rows());
   report.headline_unit = "frames";
   if (!first.empty()) report.pictures = {{"first frame", first}};  // interrupted before it
-  report.plots = {
-      {"True position of the target", "mm", {{"x", "truth/x_m"}, {"y", "truth/y_m"}, {"z", "truth/z_m"}}, 1e3}};
+  report.plots = plots_of(rendering);
   report.table = &truth;
-  report.config_yaml = config;
+  report.config_yaml = rendering.config;
   report.summary = summary;
   write_report(report, folder.file("report.html"));
   folder.finish();
@@ -103,10 +141,14 @@ int run_render(const RenderOptions& o) {
 Command add_render_command(CLI::App& program) {
   auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
-  CLI::App* app = program.add_subcommand("render", "write a scene's frames (PNG) and truth (CSV)");
+  CLI::App* app =
+      program.add_subcommand("render", "write frames (PNG) and truth (CSV) of a scene or an artificial sequence");
   add_run_options(*app, o.run, "scene (.yaml)");
   app->add_flag("--with-tool", o.with_tool, "show the tool, standing still where a run would begin");
-  app->footer("Example: heartservo render scenes/pig_2007.yaml --frames 250 --out rendered");
+  add_artificial_options(*app, o.artificial);
+  app->footer(
+      "Examples:\n  heartservo render scenes/pig_2007.yaml --frames 250 --out rendered\n"
+      "  heartservo render --artificial circle --texture retina --side 40 --background recorded/left");
   return {app, [options] { return run_render(*options); }};
 }
 

@@ -5,7 +5,9 @@
 #include <chrono>
 
 #include "servo/loop/loop_record.hpp"
+#include "sim/sequence/sequence_table.hpp"
 #include "sim/table/table.hpp"
+#include "tools/artificial.hpp"
 #include "tools/command.hpp"
 #include "tools/corner_truth.hpp"
 #include "tools/interrupt.hpp"
@@ -28,6 +30,7 @@ namespace {
 struct TrackOptions {
   RunOptions run;
   RecordedOptions recorded;
+  ArtificialChoice artificial;
   std::vector<std::string> trackers;
   std::vector<double> corners;
   double square_mm = 0;
@@ -39,6 +42,26 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 int list_trackers() {
   for (const auto& engine : tracking::trackers().engines()) fmt::print("{:<24}{}\n", engine.name, engine.summary);
   return DONE;
+}
+
+/// What is tracked: a scene, a recording or an artificial sequence.
+struct Tracked {
+  sim::Scene scene;  ///< of an artificial sequence only the trackers' options
+  std::unique_ptr<sim::Table> table;
+  std::string config;
+};
+
+Tracked artificial(const TrackOptions& o) {
+  if (!o.recorded.roi.empty() || !o.recorded.camera.empty() || o.recorded.frame_rate_hz > 0 || !o.corners.empty() ||
+      !o.truth.empty() || o.square_mm > 0)
+    throw ConfigError(
+        "--roi, --corners, --camera, --frame-rate-hz, --square-mm and --truth are for recorded frames; "
+        "an artificial sequence knows its region and truth");
+  const sim::SequenceOptions options = sequence_for(o.artificial, o.run);
+  Tracked tracked;
+  tracked.table = sim::make_sequence_table(options);
+  tracked.config = config_text(options, tracked.scene.tracking, "track");
+  return tracked;
 }
 
 sim::Scene configure(const TrackOptions& o) {
@@ -65,6 +88,16 @@ std::unique_ptr<tracking::TargetEstimator> estimator_for(const TrackOptions& o, 
   return options.side_m > 0 ? tracking::estimators().make("landmark_refined", options) : nullptr;
 }
 
+// `truth` may be null.
+Tracked opened(const TrackOptions& o, const CornerTruth* truth) {
+  if (o.artificial) return artificial(o);
+  sim::Scene scene = configure(o);
+  // pictures carry no clock: where the command line gives none they run on that of their truth
+  if (truth && o.recorded.frame_rate_hz == 0 && !is_scene(o.run.source) && are_pictures(o.run.source))
+    scene.camera.frame_rate_hz = truth->frame_rate_hz();
+  return {scene, sim::make_table(scene), config_text(scene, "track")};
+}
+
 tracking::Quad region_for(const TrackOptions& o, const sim::HandPicked& picked) {
   if (o.corners.empty()) return picked.target;
   tracking::Quad quad;
@@ -82,13 +115,17 @@ Report track_report(const nlohmann::json& summary, const std::vector<TrackLane>&
                                 frames - lost, frames);
   report.headline_number = first["error_px"].is_null() ? std::to_string(lost) : number(first["error_px"]["mean"], 3);
   report.headline_unit = first["error_px"].is_null() ? "lost frames" : "px mean corner error";
-  ReportTable table{"Trackers", {"tracker", "lost", "uncertain", "error px", "ms p50", "ms p99"}, {}, ""};
+  ReportTable table{
+      "Trackers", {"tracker", "lost", "wrong OK", "uncertain", "error px", "std", "max", "ms p50", "ms p99"}, {}, ""};
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     const auto& lane = summary["trackers"][i];
+    const auto error = [&](const char* key) {
+      return lane["error_px"].is_null() ? "-" : number(lane["error_px"][key], 3);
+    };
     table.rows.push_back({lanes[i].name(), std::to_string(lane["lost_frames"].get<int>()),
-                          std::to_string(lane["uncertain_frames"].get<int>()),
-                          lane["error_px"].is_null() ? "-" : number(lane["error_px"]["mean"], 3),
-                          number(lane["ms"]["p50"], 3), number(lane["ms"]["p99"], 3)});
+                          number(lane["wrong_ok_frames"], 0), std::to_string(lane["uncertain_frames"].get<int>()),
+                          error("mean"), error("std"), error("max"), number(lane["ms"]["p50"], 3),
+                          number(lane["ms"]["p99"], 3)});
     report.plots.push_back({"Displacement, " + lanes[i].name(),
                             "px",
                             {{"horizontal", "displacement/u_px"}, {"vertical", "displacement/v_px"}},
@@ -107,14 +144,12 @@ Report track_report(const nlohmann::json& summary, const std::vector<TrackLane>&
   return report;
 }
 
-int run_track(const TrackOptions& o) {
+int run_track(TrackOptions o) {
   if (o.run.list) return list_trackers();
-  sim::Scene scene = configure(o);
+  if (o.artificial) o.run.source = artificial_source(o.artificial, o.run);
   std::optional<CornerTruth> truth_file;
   if (!o.truth.empty()) truth_file.emplace(o.truth);
-  // pictures carry no clock: where the command line gives none they run on that of their truth
-  if (truth_file && o.recorded.frame_rate_hz == 0 && !is_scene(o.run.source) && are_pictures(o.run.source))
-    scene.camera.frame_rate_hz = truth_file->frame_rate_hz();
+  const auto [scene, table, config] = opened(o, truth_file ? &*truth_file : nullptr);
   std::vector<std::string> names = o.trackers.empty() ? std::vector<std::string>{scene.engines.tracker} : o.trackers;
   if (names == std::vector<std::string>{"all"}) names = tracking::trackers().names();
   for (const auto& name : names) {
@@ -122,11 +157,10 @@ int run_track(const TrackOptions& o) {
     if (std::count(names.begin(), names.end(), name) > 1)
       throw ConfigError(fmt::format("--tracker: '{}' is given twice; keep one", name));
   }
-  const auto table = sim::make_table(scene);
   const std::size_t expected = table->frames().frame_count().value_or(0);
 
   // Without a calibration the homography stays on the pixels: a guessed lens would only add its own error.
-  const bool calibrated = !scene.is_recorded() || !scene.camera.calibration.empty();
+  const bool calibrated = !o.artificial && (!scene.is_recorded() || !scene.camera.calibration.empty());
   const tracking::Camera lens = calibrated ? table->camera() : tracking::Camera{};
   std::vector<TrackLane> lanes;
   for (const auto& name : names)
@@ -177,7 +211,6 @@ int run_track(const TrackOptions& o) {
     if (lane.table().has("pose/qw")) write_tum(lane.table(), folder.file("trajectory_" + lane.name() + ".tum"));
   }
   if (lanes.size() > 1) lanes.front().table().write_csv(folder.file("frames.csv"));
-  const std::string config = config_text(scene, "track");
   folder.write("config.yaml", config);
   folder.write("summary.json", summary.dump(2) + "\n");
   write_report(track_report(summary, lanes, pictures, config), folder.file("report.html"));
@@ -200,6 +233,7 @@ Command add_track_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand("track", "follow a region; several trackers side by side");
   add_run_options(*app, o.run, "image folder, printf pattern, video or scene (.yaml)");
   add_recording_options(*app, o.recorded);
+  add_artificial_options(*app, o.artificial);
   app->add_option("--tracker", o.trackers, "trackers, separated by commas, or 'all'")->delimiter(',');
   app->add_option("--corners", o.corners, "region as x1,y1,...,x4,y4 in px, clockwise from top left")
       ->delimiter(',')
@@ -212,6 +246,7 @@ Command add_track_command(CLI::App& program) {
   app->footer(
       "Examples:\n  heartservo track frames/ --roi 150,130,60,60\n"
       "  heartservo track scenes/pig_2007.yaml --tracker all --frames 250\n"
+      "  heartservo track --artificial b --texture retina --side 40 --tracker all\n"
       "  heartservo track rendered/frames --truth rendered/truth.csv --corners 232,223,286,224,285,278,231,277");
   return {app, [options] { return run_track(*options); }};
 }

@@ -29,6 +29,8 @@ std::vector<std::string> column_names(bool metric) {
   return names;
 }
 
+constexpr double kWrong_px = 5;  // a region further off than this is another region
+
 json extent(const std::vector<double>& values) {
   const auto s = servo::spread_of(values);
   if (values.empty()) return nullptr;
@@ -64,7 +66,10 @@ const tracking::Track& TrackLane::follow(const tracking::Frame& frame, const tra
     error = 0;
     for (std::size_t i = 0; i < 4; ++i) error += (track_.corners[i] - (*truth)[i]).norm() / 4;
     errors_px_.push_back(error);
+    wrong_ok_ += track_.state == TrackState::OK && !(error <= kWrong_px);
   }
+  scored_ = scored_ || truth;
+  score_lost_ += lost || error > kWrong_px;
   std::vector<double> row{frame.time_s, static_cast<double>(frame.sequence), static_cast<double>(track_.state),
                           track_.quality};
   for (const auto& corner : track_.corners) row.insert(row.end(), {lost ? NAN : corner.x(), lost ? NAN : corner.y()});
@@ -90,6 +95,8 @@ json TrackLane::summary() const {
   j["name"] = name_;
   j["lost_frames"] = lost_;
   j["uncertain_frames"] = uncertain_;
+  j["wrong_ok_frames"] = scored_ ? json(wrong_ok_) : json();
+  j["score_lost_frames"] = scored_ ? json(score_lost_) : json();
   j["relocks"] = relocks_;
   j["error_px"] = nullptr;
   if (!errors_px_.empty()) {
@@ -104,9 +111,9 @@ json TrackLane::summary() const {
 
 std::string track_table(const json& summary) {
   std::string t =
-      fmt::format("{}: {} frames\n\n{:<16}{:>6}{:>11}{:>9}{:>11}{:>9}{:>9}{:>10}{:>10}{:>12}{:>12}\n",
-                  summary["source"].get<std::string>(), summary["frames"].get<int>(), "tracker", "lost", "uncertain",
-                  "relocks", "error px", "std", "max", "ms p50", "ms p99", "x p-p px", "y p-p px");
+      fmt::format("{}: {} frames\n\n{:<16}{:>6}{:>10}{:>11}{:>9}{:>11}{:>9}{:>9}{:>10}{:>10}{:>12}{:>12}\n",
+                  summary["source"].get<std::string>(), summary["frames"].get<int>(), "tracker", "lost", "wrong OK",
+                  "uncertain", "relocks", "error px", "std", "max", "ms p50", "ms p99", "x p-p px", "y p-p px");
   for (const json& lane : summary["trackers"]) {
     const json& e = lane["error_px"];
     const auto error = [&](const char* key) { return e.is_null() ? "-" : number(e[key], 3); };
@@ -114,10 +121,11 @@ std::string track_table(const json& summary) {
       const json& d = lane["displacement_px"][axis];
       return d.is_null() ? "-" : number(d["peak_to_peak"], 1);
     };
-    t += fmt::format("{:<16}{:>6}{:>11}{:>9}{:>11}{:>9}{:>9}{:>10}{:>10}{:>12}{:>12}\n",
-                     lane["name"].get<std::string>(), lane["lost_frames"].get<int>(),
-                     lane["uncertain_frames"].get<int>(), lane["relocks"].get<int>(), error("mean"), error("std"),
-                     error("max"), number(lane["ms"]["p50"], 3), number(lane["ms"]["p99"], 3), swing("x"), swing("y"));
+    t +=
+        fmt::format("{:<16}{:>6}{:>10}{:>11}{:>9}{:>11}{:>9}{:>9}{:>10}{:>10}{:>12}{:>12}\n",
+                    lane["name"].get<std::string>(), lane["lost_frames"].get<int>(), number(lane["wrong_ok_frames"], 0),
+                    lane["uncertain_frames"].get<int>(), lane["relocks"].get<int>(), error("mean"), error("std"),
+                    error("max"), number(lane["ms"]["p50"], 3), number(lane["ms"]["p99"], 3), swing("x"), swing("y"));
   }
   return t;
 }

@@ -25,7 +25,8 @@ class TrackLane {
   /// Follows one frame; `truth` is where the corners truly are, or null. The result stays until the next call.
   const tracking::Track& follow(const tracking::Frame& frame, const tracking::Quad* truth, double (*now_s)());
 
-  /// This tracker's entry of summary.json.
+  /// This tracker's entry of summary.json. `wrong_ok_frames` were called OK though the true corners are over 5 px off;
+  /// `score_lost_frames` are those LOST and all over 5 px off; both null without truth.
   nlohmann::json summary() const;
 
   const TimeTable& table() const { return table_; }
@@ -37,6 +38,8 @@ class TrackLane {
   TimeTable table_;
   tracking::Track track_;
   std::size_t lost_ = 0, uncertain_ = 0, relocks_ = 0;
+  std::size_t wrong_ok_ = 0, score_lost_ = 0;  // against truth: over 5 px off and called OK; LOST or over 5 px off
+  bool scored_ = false;
   std::vector<double> errors_px_, ms_, u_px_, v_px_;
   Eigen::Vector2d start_px_ = Eigen::Vector2d::Zero();
 };

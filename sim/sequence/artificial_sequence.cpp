@@ -71,14 +71,16 @@ Eigen::Vector2d place_px(int place, cv::Size picture) {
   return {std::round(kPlaces[place][0] * picture.width), std::round(kPlaces[place][1] * picture.height)};
 }
 
+std::shared_ptr<const BasePicture> base_picture_of(const SequenceOptions& options) {
+  return std::make_shared<BasePicture>(make_base_picture(options.texture, stream_seed(options.seed, Stream::TEXTURE)));
+}
+
 ArtificialSequence::ArtificialSequence(const SequenceOptions& options, std::shared_ptr<const BasePicture> base)
     : options_(valid(options)),
       kind_(sequence_kind(options.sequence)),
       background_(kind_.patch ? std::make_unique<Background>(options) : nullptr),
       size_(background_ ? background_->frames().size() : cv::Size(kSize, kSize)),
-      base_(base ? std::move(base)
-                 : std::make_shared<BasePicture>(
-                       make_base_picture(options.texture, stream_seed(options.seed, Stream::TEXTURE)))),
+      base_(base ? std::move(base) : base_picture_of(options)),
       sampler_(base_->grey, base_->texels_per_px, {0.5 * (size_.width - 1), 0.5 * (size_.height - 1)}),
       glare_(options.speculars, place_px(options.place, size_), stream_seed(options.seed, Stream::GLARE)),
       noise_(options.noise_grey, size_.width, stream_seed(options.seed, Stream::NOISE)) {

@@ -14,10 +14,12 @@
 
 namespace heartservo::sim {
 
+/// The picture that the options name, drawn from their seed.
+std::shared_ptr<const BasePicture> base_picture_of(const SequenceOptions& options);
+
 class ArtificialSequence final : public tracking::FrameSource {
  public:
-  /// Throws ConfigError (options), InputError (files). `base`: instead of the picture that the options name, to share
-  /// one among sequences.
+  /// Throws ConfigError (options), InputError (files). `base`: base_picture_of(options), to share it among sequences.
   explicit ArtificialSequence(const SequenceOptions& options, std::shared_ptr<const BasePicture> base = nullptr);
   ~ArtificialSequence() override;
 

@@ -19,7 +19,8 @@ namespace {
 constexpr int kSize = 1664;  // texels: a frame of 512 px with 160 px around it, two texels to a pixel
 constexpr double kTexelsPerPx = 2;
 constexpr double kTexelsPerMm = 10.8 * kTexelsPerPx;
-constexpr double kBlur = 0.9;  // texels, standard deviation: about half a pixel, that of a good lens
+constexpr double kBlur = 0.9;            // texels, standard deviation: about half a pixel, that of a good lens
+constexpr double kPhotographBlur = 1.5;  // texels
 
 cv::Mat heart(std::uint64_t seed) {
   TextureOptions options;
@@ -34,10 +35,10 @@ cv::Mat retina(std::uint64_t seed) {
   cv::RNG random(seed ^ 0x5e71ULL);
   const cv::Mat slow = smooth_noise(kSize, 500, random), middle = smooth_noise(kSize, 60, random),
                 fine = smooth_noise(kSize, 7, random);
-  cv::Mat vessels = paint_vessels(kSize, 1.4e3 * kTexelsPerMm, 5, random);
-  cv::GaussianBlur(vessels, vessels, {}, 1.3);
+  cv::Mat vessels = paint_vessels(kSize, 1.3e3 * kTexelsPerMm, 2.6, random);
+  cv::GaussianBlur(vessels, vessels, {}, 1.8);
   cv::Mat grey = 125 + 14 * slow + 3 * middle + 2.2 * fine;
-  grey -= 62 * vessels;
+  grey -= 36 * vessels;
   return cv::max(4, cv::min(250, grey));
 }
 
@@ -45,7 +46,7 @@ cv::Mat retina(std::uint64_t seed) {
 void draw_leaf(cv::Mat& grey, double radius, cv::RNG& random) {
   constexpr int kShift = 4;
   const cv::Point2d at(random.uniform(-radius, kSize + radius), random.uniform(-radius, kSize + radius));
-  const double tone = std::clamp(118 + random.gaussian(32), 24.0, 205.0);
+  const double tone = std::clamp(118 + random.gaussian(17), 24.0, 205.0);
   if (random.uniform(0, 2) == 0) {
     cv::ellipse(grey, {cvRound(at.x * 16), cvRound(at.y * 16)},
                 {cvRound(radius * 16), cvRound(radius * random.uniform(6.0, 16.0))}, random.uniform(0.0, 180.0), 0, 360,
@@ -63,7 +64,7 @@ void draw_leaf(cv::Mat& grey, double radius, cv::RNG& random) {
 cv::Mat detail(std::uint64_t seed) {
   cv::RNG random(seed ^ 0xdeadULL);
   cv::Mat leaves(kSize, kSize, CV_8UC1, cv::Scalar(118)), grey;
-  constexpr double kSmallest = 5, kLargest = 300;  // texels; radii with density 1 / r^3, every later leaf on top
+  constexpr double kSmallest = 5, kLargest = 160;  // texels; radii with density 1 / r^3, every later leaf on top
   constexpr int kLeaves = 26000;
   for (int i = 0; i < kLeaves; ++i) {
     const double p = random.uniform(0.0, 1.0), a = 1 / (kSmallest * kSmallest), b = 1 / (kLargest * kLargest);
@@ -71,7 +72,7 @@ cv::Mat detail(std::uint64_t seed) {
   }
   leaves.convertTo(grey, CV_32FC1);
   grey += 4 * smooth_noise(kSize, 40, random) + 3 * smooth_noise(kSize, 9, random);
-  cv::GaussianBlur(grey, grey, {}, kBlur);
+  cv::GaussianBlur(grey, grey, {}, kPhotographBlur);
   return grey;
 }
 

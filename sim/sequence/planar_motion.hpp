@@ -7,7 +7,7 @@
 //   t/80);
 //           scale 1 + 0.10 sin(2 pi t/67); perspective 2e-4 sin(2 pi t/90), 1.5e-4 sin(2 pi t/60) per px
 //   c       b with 16 moving saturated blobs and noise of 4 grey levels
-//   d       x = 60 sin(2 pi t/27), y = 25 sin(2 pi t/41); rotation 8 deg sin(2 pi t/33): 14.3 px in the fastest frame
+//   d       x = 60 sin(2 pi t/27), y = 25 sin(2 pi t/41); rotation 8 deg sin(2 pi t/33): 14.4 px in the fastest frame
 //   e       b with gain 1 + 0.25 sin(2 pi t/45) and bias 15 sin(2 pi t/30) grey levels
 //   cde     b and d added (places, angles), with the blobs and noise of c and the light of e
 //   fast    x = 75 sin(2 pi t/27), y = 55 sin(2 pi t/19); rotation 8 deg sin(2 pi t/33): 24.9 px in the fastest frame

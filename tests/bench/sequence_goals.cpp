@@ -138,12 +138,11 @@ void sweep(const Choice& o) {
     sim::SequenceOptions options = sim::SequenceOptions::named(name);
     for (const int seed : o.seeds)
       for (const auto& texture : o.textures) {
+        options.seed = seed;
+        options.texture = texture;
         auto& base = bases[{texture, seed}];
-        if (!base)
-          base = std::make_shared<sim::BasePicture>(sim::make_base_picture(texture, static_cast<std::uint64_t>(seed)));
+        if (!base) base = sim::base_picture_of(options);
         for (const int place : o.places) {
-          options.seed = seed;
-          options.texture = texture;
           options.place = place;
           run_place(o, options, base, cells);
         }
