@@ -1,5 +1,6 @@
 #include "tracking/planar/visp_aligner.hpp"
 
+#include <gsl/gsl_errno.h>
 #include <visp3/tt/vpTemplateTrackerSSDESM.h>
 #include <visp3/tt/vpTemplateTrackerSSDInverseCompositional.h>
 #include <visp3/tt/vpTemplateTrackerWarpHomographySL3.h>
@@ -24,6 +25,11 @@ constexpr double kWorthTrying = 0.1;  // correlation of template and picture at 
 constexpr unsigned int kMaxIterations = 200;
 constexpr double kCostThreshold = 1e-7;
 
+// ViSP inverts its matrices through the GNU Scientific Library, whose own handler ends the process at a singular one
+// (a plain region). Without a handler the inverse is not finite, which is noticed here. Off for good: to switch it per
+// call would not be safe with threads.
+void survive_singular_matrices() { [[maybe_unused]] static const auto before = gsl_set_error_handler_off(); }
+
 std::unique_ptr<vpTemplateTracker> make_visp_tracker(VispMethod method, vpTemplateTrackerWarp* warp) {
   std::unique_ptr<vpTemplateTracker> tracker;
   switch (method) {
@@ -36,9 +42,12 @@ std::unique_ptr<vpTemplateTracker> make_visp_tracker(VispMethod method, vpTempla
     case VispMethod::ZNCC:
       tracker = std::make_unique<vpTemplateTrackerZNCCInverseCompositional>(warp);
       break;
-    case VispMethod::MI:
-      tracker = std::make_unique<vpTemplateTrackerMIInverseCompositional>(warp);
+    case VispMethod::MI: {
+      auto mi = std::make_unique<vpTemplateTrackerMIInverseCompositional>(warp);
+      mi->setMinimizationMethod(vpTemplateTrackerMIInverseCompositional::USE_NEWTON);
+      tracker = std::move(mi);
       break;
+    }
   }
   tracker->setSampling(1, 1);
   tracker->setIterationMax(kMaxIterations);
@@ -63,7 +72,7 @@ bool parameters_of(const Eigen::Matrix3d& H, vpColVector& p) {
 
 class VispAligner final : public PatchAligner {
  public:
-  explicit VispAligner(VispMethod method) : method_(method) {}
+  explicit VispAligner(VispMethod method) : method_(method) { survive_singular_matrices(); }
 
   void learn(const ImagePyramid& picture, const Camera& camera, const Eigen::Matrix3d& G, int side_x,
              int side_y) override {
