@@ -2,33 +2,15 @@
 #include <fmt/ranges.h>
 #include <visp3/core/vpXmlParserCamera.h>
 
-#include <iostream>
 #include <regex>
-#include <sstream>
 
 #include "tracking/camera/camera_formats.hpp"
 #include "tracking/settings/errors.hpp"
+#include "tracking/settings/quiet_streams.hpp"
 
 namespace heartservo::tracking {
 
 namespace {
-
-// ViSP's parser reports on stdout, where a command's JSON goes. Sends both streams nowhere for the length of a scope.
-class QuietStreams {
- public:
-  QuietStreams() : out_(std::cout.rdbuf(sink_.rdbuf())), error_(std::cerr.rdbuf(sink_.rdbuf())) {}
-  ~QuietStreams() {
-    std::cout.rdbuf(out_);
-    std::cerr.rdbuf(error_);
-  }
-  QuietStreams(const QuietStreams&) = delete;
-  QuietStreams& operator=(const QuietStreams&) = delete;
-
- private:
-  std::ostringstream sink_;
-  std::streambuf* out_;
-  std::streambuf* error_;
-};
 
 // The parser wants the camera's exact name before it reads anything.
 std::vector<std::string> camera_names(std::string text) {

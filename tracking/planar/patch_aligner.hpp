@@ -3,6 +3,7 @@
 // re-acquisition, so that every aligner gets the same loss detection.
 #include <Eigen/Core>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 
 #include "tracking/camera/camera.hpp"
 #include "tracking/planar/image_pyramid.hpp"
@@ -39,6 +40,18 @@ class PatchAligner {
 
   /// The template at a pyramid level.
   virtual const Patch& patch(int level) const = 0;
+
+  /// False: align() ignores the MotionModel, so that asking again with another one finds nothing new.
+  virtual bool obeys_model() const { return true; }
+
+  // For aligners that need more than the pyramid's window, or carry something from frame to frame.
+
+  /// The whole 8-bit picture, before it is aligned with; valid until the next call. Comes before learn(), too.
+  virtual void see(const cv::Mat& /*grey*/) {}
+  /// `alignment` is where the tracker believes the region to be in the picture last seen.
+  virtual void believe(const Alignment& /*alignment*/) {}
+  /// The region is lost: what was carried from frame to frame means nothing any more.
+  virtual void forget() {}
 };
 
 }  // namespace heartservo::tracking

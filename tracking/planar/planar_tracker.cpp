@@ -43,6 +43,7 @@ PlanarTracker::PlanarTracker(std::unique_ptr<PatchAligner> aligner, const Camera
 std::string PlanarTracker::start(const Frame& frame, const Quad& corners) {
   started_ = locked_ = false;
   if (frame.status != FrameStatus::OK) return "the first frame is not readable: " + frame.note;
+  if (frame.grey.type() != CV_8UC1) return "the first frame is not 8-bit grey";
   if (!is_convex(corners)) return "the region's corners are not four finite points clockwise from top left";
   for (const auto& c : corners)
     if (c.x() < 0 || c.y() < 0 || c.x() > frame.grey.cols - 1 || c.y() > frame.grey.rows - 1)
@@ -65,10 +66,12 @@ std::string PlanarTracker::start(const Frame& frame, const Quad& corners) {
   reference_.G_plane_patch = to_sl3(homography_between(patch_corners_, plane));
   if (!reference_.G_plane_patch.allFinite()) return "the region's corners cannot be undistorted by this camera";
   build_pyramid(frame.grey, corners, corners, 16, options_.levels);
+  aligner_->see(frame.grey);
   aligner_->learn(pyramid_, camera_, reference_.G_plane_patch, static_cast<int>(std::lround(side_x)),
                   static_cast<int>(std::lround(side_y)));
   if (std::string why = unfit_texture(); !why.empty()) return why;
   last_ = reference_;
+  aligner_->believe(last_);
   last_time_s_ = frame.time_s;
   plane_velocity_.setZero();
   surprise_px_ = INFINITY;
@@ -132,7 +135,7 @@ PlanarTracker::Candidate PlanarTracker::try_from(const Alignment& start, int coa
   Candidate c;
   c.alignment = aligner_->align(pyramid_, start, coarsest, MotionModel::HOMOGRAPHY);
   c.quality = quality_of(c.alignment, expected);
-  if (c.quality >= options_.ok_quality) return c;
+  if (c.quality >= options_.ok_quality || !aligner_->obeys_model()) return c;
   // Too little texture, or tissue that deforms, lets the perspective terms run away: fewer parameters hold.
   Candidate stiff;
   stiff.alignment = aligner_->align(pyramid_, start, coarsest, MotionModel::AFFINE);
@@ -167,6 +170,7 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
 
 PlanarTracker::Candidate PlanarTracker::reacquire(const cv::Mat& grey) {
   pyramid_.build(grey, cv::Rect(0, 0, grey.cols, grey.rows), options_.levels);
+  aligner_->forget();
   return search(corners_of(last_.G_plane_patch), std::hypot(grey.cols, grey.rows), 6);
 }
 
@@ -221,6 +225,7 @@ void PlanarTracker::believe(const Candidate& candidate, double time_s) {
     surprise_px_ = INFINITY;  // nothing is foreseen yet
   }
   last_ = candidate.alignment;
+  aligner_->believe(last_);
   last_time_s_ = time_s;
   locked_ = true;
 }
@@ -230,8 +235,10 @@ Track PlanarTracker::track(const Frame& frame) {
   track.time_s = frame.time_s;
   track.sequence = frame.sequence;
   if (!started_) return track;
-  const bool readable = frame.status == FrameStatus::OK && frame.grey.cols == width_ && frame.grey.rows == height_;
+  const bool readable = frame.status == FrameStatus::OK && frame.grey.type() == CV_8UC1 && frame.grey.cols == width_ &&
+                        frame.grey.rows == height_;
   if (readable) {
+    aligner_->see(frame.grey);
     const bool was_locked = locked_;
     Candidate found;
     if (locked_) found = follow(frame);
