@@ -91,8 +91,10 @@ class EsmAligner final : public PatchAligner {
     const double variance = std::max(1.0, pass.noise_grey * pass.noise_grey);
     for (int k = 2; k < 8; ++k) {
       const double sigma = k < 6 ? options_.affine_sigma : options_.perspective_sigma;
-      A(k, k) += variance / (sigma * sigma);
-      b(k) += variance / (sigma * sigma) * moved_[k];
+      const double strange = moved_[k] / (2 * sigma);  // Cauchy: a change that the picture insists on is let through
+      const double tie = variance / (sigma * sigma) / (1 + strange * strange);
+      A(k, k) += tie;
+      b(k) += tie * moved_[k];
     }
     for (int k = parameters; k < 8; ++k) {
       A.row(k).setZero();
