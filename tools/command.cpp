@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tools/report/report.hpp"
 #include "tools/run_folder.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_reader.hpp"
@@ -113,6 +114,18 @@ std::string config_text(const sim::Scene& scene, const std::string& command) {
     if (!path->empty()) *path = absolute(sim::resolve(scene, *path));
   return fmt::format("# heartservo {} {}: the resolved configuration; it can be run again as a scene\n{}",
                      HEARTSERVO_VERSION, command, to_yaml(resolved));
+}
+
+void finish_run(RunFolder& folder, const Report& report, const RunOptions& options, const std::string& text) {
+  const std::string summary = report.summary.dump(2) + "\n";
+  folder.write("config.yaml", report.config_yaml);
+  folder.write("summary.json", summary);
+  write_report(report, folder.file("report.html"));
+  folder.finish();
+  if (options.json)
+    fmt::print("{}", summary);
+  else if (!options.quiet)
+    fmt::print("{}\nreport: {}\n", text, folder.file("report.html").string());
 }
 
 std::filesystem::path run_path(const RunOptions& options, const std::string& command) {

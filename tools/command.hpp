@@ -9,6 +9,9 @@
 
 namespace heartservo::tools {
 
+class RunFolder;
+struct Report;
+
 /// Exit codes (a contract: scripts depend on them).
 enum ExitCode {
   DONE = 0,
@@ -70,6 +73,10 @@ std::string config_text(const sim::Scene& scene, const std::string& command);
 
 /// Rows to make room for: the frames expected, within reason (0: nobody knows).
 std::size_t rows_ahead(std::size_t expected_frames);
+
+/// Ends a run: config.yaml, summary.json and report.html from the report, the folder under its name, and on stdout the
+/// summary (--json) or `text` and where the report is, unless --quiet.
+void finish_run(RunFolder& folder, const Report& report, const RunOptions& options, const std::string& text);
 
 /// Where the run goes: --out, or a folder made of command, source and date.
 std::filesystem::path run_path(const RunOptions& options, const std::string& command);

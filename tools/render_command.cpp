@@ -115,8 +115,6 @@ int run_render(RenderOptions o) {
   summary.update(rendering.facts);
   truth.write_csv(folder.file("truth.csv"));
   if (rendering.metric) tracking::write_ros_camera(table->camera(), folder.file("camera.yaml").string(), "endoscope");
-  folder.write("config.yaml", rendering.config);
-  folder.write("summary.json", summary.dump(2) + "\n");
   Report report;
   report.title = "render " + stem_of(o.run.source);
   report.headline = fmt::format("{} frames of {}, with truth.", truth.rows(), rendering.title);
@@ -127,12 +125,8 @@ int run_render(RenderOptions o) {
   report.table = &truth;
   report.config_yaml = rendering.config;
   report.summary = summary;
-  write_report(report, folder.file("report.html"));
-  folder.finish();
-  if (o.run.json)
-    fmt::print("{}\n", summary.dump(2));
-  else if (!o.run.quiet)
-    fmt::print("{} frames in {}\n", truth.rows(), folder.file("frames").string());
+  finish_run(folder, report, o.run,
+             fmt::format("{} frames in {}\n", truth.rows(), (folder.path() / "frames").string()));
   return interrupted ? INTERRUPTED : DONE;
 }
 

@@ -169,17 +169,11 @@ int run_servo(const ServoOptions& o) {
       static_cast<double>(frames.rows()) / loop_options.frame_rate_hz / std::max(1e-9, now_s() - begin);
 
   const auto summary = servo_summary(score.summary(), scene, facts);
-  const std::string config = config_text(scene, "servo");
   frames.write_csv(folder.file("frames.csv"));
-  folder.write("config.yaml", config);
-  folder.write("summary.json", summary.dump(2) + "\n");
-  write_report(servo_report(summary, with_motion(frames), album.pictures(), config), folder.file("report.html"));
   if (!facts.stop_reason.empty()) tail(frames, kFlight_s).write_csv(folder.file("flight.csv"));
-  folder.finish();
-  if (o.run.json)
-    fmt::print("{}\n", summary.dump(2));
-  else if (!o.run.quiet)
-    fmt::print("{}\nreport: {}\n", residual_table(summary), folder.file("report.html").string());
+  const TimeTable plotted = with_motion(frames);
+  finish_run(folder, servo_report(summary, plotted, album.pictures(), config_text(scene, "servo")), o.run,
+             residual_table(summary));
   if (!facts.stop_reason.empty()) {
     fmt::print(stderr, "heartservo: safety stop: {}; the last {} s are in {}\n", facts.stop_reason, kFlight_s,
                folder.file("flight.csv").string());

@@ -211,14 +211,7 @@ int run_track(TrackOptions o) {
     if (lane.table().has("pose/qw")) write_tum(lane.table(), folder.file("trajectory_" + lane.name() + ".tum"));
   }
   if (lanes.size() > 1) lanes.front().table().write_csv(folder.file("frames.csv"));
-  folder.write("config.yaml", config);
-  folder.write("summary.json", summary.dump(2) + "\n");
-  write_report(track_report(summary, lanes, pictures, config), folder.file("report.html"));
-  folder.finish();
-  if (o.run.json)
-    fmt::print("{}\n", summary.dump(2));
-  else if (!o.run.quiet)
-    fmt::print("{}\nreport: {}\n", track_table(summary), folder.file("report.html").string());
+  finish_run(folder, track_report(summary, lanes, pictures, config), o.run, track_table(summary));
   if (truth_file && with_truth == 0)
     fmt::print(stderr, "heartservo: {}: no row has the time of a frame, so no error is known; check --frame-rate-hz\n",
                o.truth);

@@ -18,7 +18,8 @@ bool shorten(Eigen::Vector3d& v, double longest) {
 
 std::vector<std::string> GuardOptions::validate() const {
   std::vector<std::string> problems;
-  if (max_step_m > workspace_radius_m) problems.push_back("guard.max_step_m is longer than guard.workspace_radius_m");
+  if (max_step_m > workspace_radius_m)
+    problems.push_back("loop.guard.max_step_m is longer than loop.guard.workspace_radius_m");
   return problems;
 }
 

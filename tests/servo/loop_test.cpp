@@ -97,7 +97,8 @@ struct Bench {
                                   [ticks]() mutable { return ticks += 0.001; });
   }
   void run() {
-    ASSERT_EQ(loop->start({}, {}), "");
+    const tracking::Quad region = tracking::rectangle(0, 0, 1, 1);
+    ASSERT_EQ(loop->start(region, region), "");
     LoopRecord record;
     while (loop->step(record)) records.push_back(record);
   }
@@ -155,9 +156,10 @@ TEST(Loop, ANotFiniteLawIsStoppedByTheGuardAndNothingReachesTheRobot) {
 TEST(Loop, SaysWhyATrackerRefuses) {
   Bench bench(5);
   bench.tracker->refusal = "too small";
-  EXPECT_EQ(bench.loop->start({}, {}), "too small");
+  const tracking::Quad region = tracking::rectangle(0, 0, 1, 1);
+  EXPECT_EQ(bench.loop->start(region, region), "too small");
   Bench empty(0);
-  EXPECT_EQ(empty.loop->start({}, {}), "there is no frame");
+  EXPECT_EQ(empty.loop->start(region, region), "there is no frame");
 }
 
 }  // namespace
