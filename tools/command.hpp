@@ -29,6 +29,7 @@ struct Command {
 Command add_servo_command(CLI::App& program);
 Command add_track_command(CLI::App& program);
 Command add_render_command(CLI::App& program);
+Command add_texture_command(CLI::App& program);
 
 /// Options of every command that makes a run.
 struct RunOptions {

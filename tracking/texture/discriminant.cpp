@@ -59,8 +59,7 @@ double wilks_lambda(const Scatter& s, const std::vector<Eigen::Index>& chosen) {
 
 Discriminant discriminant(const Scatter& s, const std::vector<Eigen::Index>& chosen) {
   const Eigen::MatrixXd within = part(s.within, chosen) / std::max(1, s.samples - s.classes);
-  const Eigen::MatrixXd between =
-      (part(s.total, chosen) - part(s.within, chosen)) / std::max(1, s.samples - s.classes);
+  const Eigen::MatrixXd between = (part(s.total, chosen) - part(s.within, chosen)) / std::max(1, s.samples - s.classes);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(between, within);
   const Eigen::Index count = std::min<Eigen::Index>(static_cast<Eigen::Index>(chosen.size()), s.classes - 1);
   Discriminant result;
@@ -86,8 +85,8 @@ double leave_one_out_accuracy(const Eigen::MatrixXd& z, const std::vector<int>& 
     double least = 0;
     for (int c = 0; c < classes; ++c) {
       if (all.count(c) <= 0) continue;
-      const Eigen::VectorXd mean =
-          c == own ? Eigen::VectorXd((all.sum.col(c) - sample) / (n - 1)) : Eigen::VectorXd(all.sum.col(c) / all.count(c));
+      const Eigen::VectorXd mean = c == own ? Eigen::VectorXd((all.sum.col(c) - sample) / (n - 1))
+                                            : Eigen::VectorXd(all.sum.col(c) / all.count(c));
       const Eigen::VectorXd off = sample - mean;
       const double distance = off.dot(within.solve(off));
       if (nearest < 0 || distance < least) {

@@ -18,7 +18,8 @@ struct Scatter {
 /// keeps features that depend on each other invertible.
 Scatter scatter(const Eigen::MatrixXd& z, const std::vector<int>& label, int classes, double ridge);
 
-/// Wilks' lambda of the features `chosen`: det(within) / det(total), 1 for no discrimination, 0 for perfect. 1 for none.
+/// Wilks' lambda of the features `chosen`: det(within) / det(total), 1 for no discrimination, 0 for perfect. 1 for
+/// none.
 double wilks_lambda(const Scatter& s, const std::vector<Eigen::Index>& chosen);
 
 struct Discriminant {

@@ -96,7 +96,8 @@ std::string problem_of(const FeatureTable& table, const SelectionOptions& option
   const auto samples = table.values.rows(), features = table.values.cols();
   const auto classes = static_cast<Index>(table.classes.size());
   if (classes < 2)
-    return classes == 0 ? "there are no samples" : "there is one class only, '" + table.classes[0] + "'; give two or more";
+    return classes == 0 ? "there are no samples"
+                        : "there is one class only, '" + table.classes[0] + "'; give two or more";
   if (samples < features + classes)
     return fmt::format("{} samples are too few for {} features and {} classes; give {} or more", samples, features,
                        classes, features + classes);

@@ -45,8 +45,8 @@ struct Selection {
   double accuracy = 0;        ///< leave one out, of the chosen
 };
 
-/// Why the table cannot be used, or "": fewer than two classes, fewer samples than features and classes together, a class
-/// with one sample, numbers that are not finite, fewer than `count` features that vary.
+/// Why the table cannot be used, or "": fewer than two classes, fewer samples than features and classes together, a
+/// class with one sample, numbers that are not finite, fewer than `count` features that vary.
 std::string problem_of(const FeatureTable& table, const SelectionOptions& options = {});
 
 /// Stepwise forward by Wilks' lambda. Throws std::invalid_argument with problem_of().
