@@ -1,5 +1,6 @@
 #pragma once
 // Regions of pictures with class labels: what feature selection works on.
+#include <cstdint>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>

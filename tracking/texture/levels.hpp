@@ -1,5 +1,7 @@
 #pragma once
 // Grey values to a few grey levels, the first step of every texture matrix.
+#include <cstddef>
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>

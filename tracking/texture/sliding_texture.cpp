@@ -7,7 +7,7 @@ namespace heartservo::tracking {
 
 namespace {
 
-constexpr int kWorthwhileSteps = 6;  // beyond, building afresh is as quick
+constexpr int kWorthwhileSteps = 12;  // beyond, building afresh is as quick
 
 // A side of the window, as a line of `length` pixels `step` apart; the window lies `inwards`, `depth` pixels deep, the
 // line included. Directions of runs as seen from the line.

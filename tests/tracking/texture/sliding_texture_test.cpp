@@ -56,7 +56,7 @@ TEST_F(Sliding, EqualsAFreshBuildAfterAnyWalk) {
   SlidingTexture sliding({16, 1, "full"}, 40, 36);
   sliding.load(picture.region());
   sliding.place(25, 20);
-  std::uniform_int_distribution<int> step(-4, 4);
+  std::uniform_int_distribution<int> step(-8, 8);
   int moved = 0;
   for (int i = 0; i < 400; ++i) {
     const int x = sliding.x(), y = sliding.y(), dx = step(random), dy = step(random);
@@ -66,7 +66,7 @@ TEST_F(Sliding, EqualsAFreshBuildAfterAnyWalk) {
     moved += inside;
     ASSERT_TRUE(equals_fresh_build(sliding, picture, 1)) << "step " << i;
   }
-  EXPECT_GT(moved, 200);
+  EXPECT_GT(moved, 150);
 }
 
 TEST_F(Sliding, TakesTheNextPicture) {

@@ -1,5 +1,6 @@
 #pragma once
 // Small pictures of levels, and texture matrices counted the plain way, by the definition, to compare with.
+#include <algorithm>
 #include <array>
 #include <random>
 #include <vector>
