@@ -29,7 +29,8 @@ Rows runs(const TextureMatrices& m) {
   return rows;
 }
 
-// Haralick, Shanmugam, Dinstein 1973, Fig. 3: the picture and its four matrices as printed.
+// The picture of Haralick, Shanmugam, Dinstein 1973, Fig. 3, which scikit-image's tests use too: their one-way counts
+// plus their transposes are these.
 TEST(CooccurrenceMatrix, IsHaralicksExampleInEachDirection) {
   const auto image = level_image(4, {{0, 0, 1, 1}, {0, 0, 1, 1}, {0, 2, 2, 2}, {2, 2, 3, 3}});
   EXPECT_EQ(pairs(build(image, DIRECTION_0)), (Rows{{4, 2, 1, 0}, {2, 4, 0, 0}, {1, 0, 6, 1}, {0, 0, 1, 2}}));
@@ -38,7 +39,7 @@ TEST(CooccurrenceMatrix, IsHaralicksExampleInEachDirection) {
   EXPECT_EQ(pairs(build(image, DIRECTION_45)), (Rows{{4, 1, 0, 0}, {1, 2, 2, 0}, {0, 2, 4, 1}, {0, 0, 1, 0}}));
 }
 
-// Galloway 1975, section 2: the picture and its matrices as printed.
+// The example picture of Galloway 1975 and its matrices.
 TEST(RunLengthMatrix, IsGallowaysExampleInEachDirection) {
   const auto image = level_image(4, {{0, 1, 2, 3}, {0, 2, 3, 3}, {2, 1, 1, 1}, {3, 0, 3, 0}});
   EXPECT_EQ(runs(build(image, DIRECTION_0)), (Rows{{4, 0, 0, 0}, {1, 0, 1, 0}, {3, 0, 0, 0}, {3, 1, 0, 0}}));
