@@ -32,6 +32,7 @@ struct Command {
 Command add_servo_command(CLI::App& program);
 Command add_track_command(CLI::App& program);
 Command add_render_command(CLI::App& program);
+Command add_texture_command(CLI::App& program);
 Command add_scene_command(CLI::App& program);
 
 /// A check for options: a finite number from `low` to `high`. CLI::Range lets NaN pass.

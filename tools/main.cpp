@@ -40,15 +40,19 @@ std::string suggestion(const CLI::App& app, const std::string& word) {
 
 int parse_error(const CLI::App& program, const CLI::ParseError& e) {
   const CLI::App* app = &program;
-  if (const auto used = program.get_subcommands(); !used.empty()) app = used.front();
-  const std::string help = fmt::format("; see 'heartservo {}--help'", app == &program ? "" : app->get_name() + " ");
+  std::string path;  // "texture describe "
+  for (auto used = program.get_subcommands(); !used.empty(); used = app->get_subcommands()) {
+    app = used.front();
+    path += app->get_name() + " ";
+  }
+  const std::string help = fmt::format("; see 'heartservo {}--help'", path);
   const auto extra = program.remaining(true);
   if (!extra.empty()) {
     const bool is_option = extra.front().rfind("-", 0) == 0;
     return complain(WRONG_USAGE, fmt::format("{} '{}' is not known{}{}",
-                                             is_option         ? "option"
-                                             : app == &program ? "command"
-                                                               : "argument",
+                                             is_option                           ? "option"
+                                             : !app->get_subcommands({}).empty() ? "command"
+                                                                                 : "argument",
                                              extra.front(), suggestion(*app, extra.front()), help));
   }
   return complain(WRONG_USAGE, e.what() + help);
@@ -82,7 +86,7 @@ int main(int argc, char** argv) {
       "Example: heartservo servo scenes/pig_2007.yaml\n"
       "Exit codes: 0 done, 2 wrong usage or configuration, 3 unreadable input, 4 device trouble, 5 safety stop");
   const Command commands[] = {add_servo_command(program), add_track_command(program), add_render_command(program),
-                              add_scene_command(program)};
+                              add_scene_command(program), add_texture_command(program)};
   try {
     program.parse(argc, argv);
     for (const Command& command : commands)

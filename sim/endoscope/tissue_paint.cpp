@@ -59,7 +59,8 @@ TissueLayers paint_tissue(const TextureOptions& options, std::uint64_t seed) {
   random.fill(speckle, cv::RNG::UNIFORM, -1, 1);
   cv::GaussianBlur(vessels, walls, {}, 0.22 * mm);
 
-  TissueLayers layers{cv::Mat(n, n, CV_32FC1), cv::Mat(n, n, CV_32FC1), cv::Mat(n, n, CV_32FC1)};
+  TissueLayers layers{cv::Mat(n, n, CV_32FC1), cv::Mat(n, n, CV_32FC1), cv::Mat(n, n, CV_32FC1),
+                      cv::Mat(n, n, CV_32FC1), vessels};
   const float fat_from = static_cast<float>(1.4 - 0.75 * options.fat), contrast = static_cast<float>(options.contrast);
   const float relief = static_cast<float>(options.relief * 1e-6);
   for (int j = 0; j < n; ++j) {
@@ -67,6 +68,7 @@ TissueLayers paint_tissue(const TextureOptions& options, std::uint64_t seed) {
     const float *bl = blotch.ptr<float>(j), *ff = fat_field.ptr<float>(j), *fe = fat_edge.ptr<float>(j);
     const float *lo = lobules.ptr<float>(j), *bu = bumps.ptr<float>(j), *ri = ripples.ptr<float>(j);
     const float *ve = vessels.ptr<float>(j), *wa = walls.ptr<float>(j), *sp = speckle.ptr<float>(j);
+    float* fat_share = layers.fat.ptr<float>(j);
     float *grey = layers.grey.ptr<float>(j), *height = layers.height.ptr<float>(j), *gloss = layers.gloss.ptr<float>(j);
     for (int i = 0; i < n; ++i) {
       // Fat lies where a slow field is high, and along the larger vessels.
@@ -78,6 +80,7 @@ TissueLayers paint_tissue(const TextureOptions& options, std::uint64_t seed) {
       grey[i] = std::clamp(tissue + 0.9f * ve[i] * (blood - tissue), 4.f, 250.f);
       height[i] = relief * (520 * bu[i] + 5 * lo[i] + 60 * ri[i] + 3 * g2[i] + 150 * wa[i]);
       gloss[i] = 0.9f - 0.35f * fat;
+      fat_share[i] = fat;
     }
   }
   // A wet film rounds the finest edges.

@@ -12,6 +12,8 @@ struct TissueLayers {
   cv::Mat grey;    ///< 0..255
   cv::Mat height;  ///< m, relief of the wet surface, towards the camera
   cv::Mat gloss;   ///< 0..1
+  cv::Mat fat;     ///< share of fat, 0..1; what is neither fat nor vessel is muscle
+  cv::Mat vessel;  ///< share of vessel, 0..1
 };
 
 TissueLayers paint_tissue(const TextureOptions& options, std::uint64_t seed);
