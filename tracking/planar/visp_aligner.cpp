@@ -7,7 +7,9 @@
 #include <visp3/tt/vpTemplateTrackerZNCCInverseCompositional.h>
 #include <visp3/tt_mi/vpTemplateTrackerMIInverseCompositional.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <unsupported/Eigen/MatrixFunctions>
