@@ -1,5 +1,7 @@
 #include "tracking/planar/correlation_aligner.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 

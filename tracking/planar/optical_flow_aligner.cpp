@@ -1,6 +1,8 @@
 #include "tracking/planar/optical_flow_aligner.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>

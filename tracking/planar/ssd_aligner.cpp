@@ -1,6 +1,8 @@
 #include "tracking/planar/ssd_aligner.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "tracking/planar/quad.hpp"

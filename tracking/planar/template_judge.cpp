@@ -1,5 +1,6 @@
 #include "tracking/planar/template_judge.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace heartservo::tracking {

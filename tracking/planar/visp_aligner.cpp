@@ -7,7 +7,9 @@
 #include <visp3/tt/vpTemplateTrackerZNCCInverseCompositional.h>
 #include <visp3/tt_mi/vpTemplateTrackerMIInverseCompositional.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -59,13 +61,13 @@ std::unique_ptr<vpTemplateTracker> make_visp_tracker(VispMethod method, vpTempla
 }
 
 // The coordinates of H in ViSP's basis of sl(3): log H is p[0..3] at (0,2), (1,2), (0,1), (1,0), then
-// diag(p4 - p5, -p4 - p5, 2 p5), then p[6..7] in the last row (vpTemplateTrackerWarpHomographySL3.cpp).
+// diag(p4, -p4 - p5, p5), then p[6..7] in the last row (vpTemplateTrackerWarpHomographySL3.cpp).
 bool parameters_of(const Eigen::Matrix3d& H, vpColVector& p) {
   const Eigen::Matrix3d A = H.log();
   if (!A.allFinite()) return false;
   p.resize(8);
   p[0] = A(0, 2), p[1] = A(1, 2), p[2] = A(0, 1), p[3] = A(1, 0);
-  p[4] = (A(0, 0) - A(1, 1)) / 2, p[5] = -(A(0, 0) + A(1, 1)) / 2;
+  p[4] = A(0, 0), p[5] = A(2, 2);
   p[6] = A(2, 0), p[7] = A(2, 1);
   return true;
 }

@@ -6,8 +6,8 @@
 //
 // Settings: the SL(3) warp (SSDESM throws with the plain one), every point, one level (their pyramid smooths
 // perspective away), a stopping threshold of 1e-7 on the cost and, where it can be, no damping: the default lambda of
-// 0.001 stalls the perspective terms. Mutual information steps by Newton: with its default, Levenberg-Marquardt, it
-// stays 0.6 px off on a smooth picture, diverges under rotation and takes four times as long. ViSP reads the picture as
+// 0.001 stalls the perspective terms. Mutual information steps by Newton; with its default, Levenberg-Marquardt,
+// tests/bench/tracker_bench.cpp gives 0.85 / 0.14 px at 40 / 80 px against 0.42 / 0.43. ViSP reads the picture as
 // it is: with these, give PlanarTracker no camera, as registry.cpp does; under a lens with distortion they fit a
 // homography to what is none.
 //
