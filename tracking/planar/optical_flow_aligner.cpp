@@ -101,8 +101,13 @@ class OpticalFlowAligner final : public PatchAligner {
     const cv::Size size(options_.window_px, options_.window_px);
     const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.005);
     constexpr int kGuess = cv::OPTFLOW_USE_INITIAL_FLOW;
-    cv::buildOpticalFlowPyramid(anchor.grey(window), before_, size, levels_ - 1);
-    cv::buildOpticalFlowPyramid(seen_(window), after_, size, levels_ - 1);
+    // Not "reuse the input": OpenCV 4.6 then copies a window's border onto itself, overlapping.
+    const auto pyramid = [&](const cv::Mat& picture, std::vector<cv::Mat>& levels) {
+      cv::buildOpticalFlowPyramid(picture(window), levels, size, levels_ - 1, true, cv::BORDER_REFLECT_101,
+                                  cv::BORDER_CONSTANT, false);
+    };
+    pyramid(anchor.grey, before_);
+    pyramid(seen_, after_);
     cv::calcOpticalFlowPyrLK(before_, after_, from_, to_, found_, error_, size, levels_ - 1, stop, kGuess);
     cv::calcOpticalFlowPyrLK(after_, before_, to_, back_, returned_, error_, size, levels_ - 1, stop, kGuess);
     return chain(anchor, origin, a);
