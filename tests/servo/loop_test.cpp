@@ -48,6 +48,8 @@ struct FakeTracker final : tracking::TargetTracker {
     track.state = frame.sequence >= lost_from && frame.sequence < lost_to ? TrackState::LOST : TrackState::OK;
     return track;
   }
+  Eigen::Vector2d carry(const Eigen::Vector2d& start_px) const override { return start_px; }
+  void mark_left_out(cv::Mat&) override {}
 };
 
 // The target moves at 0.1 m/s along x.

@@ -19,6 +19,8 @@ class Puppet final : public tracking::TargetTracker {
     track.corners = tracking::rectangle(100 + says[frame.sequence].second, 100, 40, 40);
     return track;
   }
+  Eigen::Vector2d carry(const Eigen::Vector2d& start_px) const override { return start_px; }
+  void mark_left_out(cv::Mat&) override {}
 };
 
 nlohmann::json summary_of(std::vector<std::pair<TrackState, double>> says, bool with_truth) {

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::size_t kBlock = 256;         // points per block: the block's Jacobian stays in the first-level cache
 constexpr int kRows = 11;                   // 8 + gain + bias + residual
-constexpr float kTukey = 4.685F;            // 95 % efficiency on normal noise
-constexpr float kSmallestNoise = 1.0F;      // grey; 8-bit pictures are not better than this
 constexpr std::size_t kMedianPoints = 512;  // enough for a scale estimate
 
 using Block = std::array<std::array<float, kBlock>, kRows>;
@@ -142,7 +140,8 @@ AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBu
   const float noise = robust_noise(b, n);
   pass.noise_grey = static_cast<double>(noise);
   pass.weight = static_cast<double>(
-      tukey_pass(b.residual.data(), b.weight.data(), n, 1.0F / (kTukey * std::max(noise, kSmallestNoise))));
+      tukey_pass(b.residual.data(), b.weight.data(), n,
+                 1.0F / (static_cast<float>(kTukey) * std::max(noise, static_cast<float>(kSmallestNoise)))));
 
   Block J;
   std::size_t filled = 0;

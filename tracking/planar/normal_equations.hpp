@@ -11,6 +11,11 @@ namespace heartservo::tracking {
 using Matrix10d = Eigen::Matrix<double, 10, 10>;
 using Vector10d = Eigen::Matrix<double, 10, 1>;
 
+/// A residual of this many standard deviations has no weight (Tukey; 95 % efficiency on normal noise).
+inline constexpr double kTukey = 4.685;
+/// grey; 8-bit pictures are not better than this
+inline constexpr double kSmallestNoise = 1;
+
 /// Buffers of one alignment, kept between frames. Sized for the largest level.
 struct AlignmentBuffers {
   std::vector<float> grey, inside, clear, residual, weight, sample;

@@ -11,6 +11,10 @@
 
 namespace heartservo::tracking {
 
+/// Never on the heap: candidates are compared and copied in every frame.
+inline constexpr int kMaxBendPoints = 64;
+using BendField = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, kMaxBendPoints>;
+
 /// Where the template lies in a picture, and how well it fits there.
 struct Alignment {
   bool converged = false;  ///< false: singular, out of the picture, or not finite
@@ -21,6 +25,10 @@ struct Alignment {
   double visible = 0;          ///< share of the template's usable points that lie in the picture and fit (not occluded)
   double noise_grey = 0;       ///< robust standard deviation of the remaining difference
   int iterations = 0;
+  /// How the region is bent before the homography is applied, of aligners that bend it: 2 x n in patch coordinates; none
+  /// where the region is plane. It leaves the patch's centre and what is near it in place, so that G_plane_patch is the
+  /// homography there.
+  BendField bend{2, 0};
 };
 
 /// How much a region may change its shape in the picture.
@@ -40,6 +48,11 @@ class PatchAligner {
 
   /// The template at a pyramid level.
   virtual const Patch& patch(int level) const = 0;
+
+  /// Where the point of the patch lies, in patch coordinates, once the region is bent by the alignment.
+  virtual Eigen::Vector2d bent(const Alignment& /*alignment*/, const Eigen::Vector2d& patch_point) const {
+    return patch_point;
+  }
 
   /// False: align() ignores the MotionModel, so that asking again with another one finds nothing new.
   virtual bool obeys_model() const { return true; }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tracking/frames/frame.hpp"
+#include "tracking/planar/left_out.hpp"
 #include "tracking/planar/sl3.hpp"
 #include "tracking/planar/template_search.hpp"
 
@@ -102,9 +103,13 @@ std::string PlanarTracker::unfit_texture() const {
   return "";
 }
 
+Eigen::Vector2d PlanarTracker::pixel_of(const Eigen::Matrix3d& G, const Eigen::Vector2d& patch_point) const {
+  return camera_.to_pixel(camera_.distort((G * patch_point.homogeneous()).hnormalized()));
+}
+
 Quad PlanarTracker::corners_of(const Eigen::Matrix3d& G) const {
-  Quad corners = transform(G, patch_corners_);
-  for (auto& c : corners) c = camera_.to_pixel(camera_.distort(c));
+  Quad corners;
+  for (std::size_t i = 0; i < 4; ++i) corners[i] = pixel_of(G, patch_corners_[i]);
   return corners;
 }
 
@@ -262,10 +267,27 @@ Track PlanarTracker::track(const Frame& frame) {
   }
   const Eigen::Matrix3d K = intrinsics(camera_);
   track.corners = corners_of(last_.G_plane_patch);
+  track.target = pixel_of(last_.G_plane_patch, aligner_->bent(last_, Eigen::Vector2d::Zero()));
   track.gain = last_.gain;
   track.bias = last_.bias;
   track.H_current_reference = to_sl3(K * last_.G_plane_patch * reference_.G_plane_patch.inverse() * K.inverse());
   return track;
+}
+
+Eigen::Vector2d PlanarTracker::carry(const Eigen::Vector2d& start_px) const {
+  if (!started_) return Eigen::Vector2d::Constant(NAN);
+  const Eigen::Vector2d plane = camera_.normalise(start_px);
+  const Eigen::Vector2d patch_point = (reference_.G_plane_patch.inverse() * plane.homogeneous()).hnormalized();
+  return pixel_of(last_.G_plane_patch, aligner_->bent(last_, patch_point));
+}
+
+void PlanarTracker::mark_left_out(cv::Mat& mask) {
+  if (mask.empty()) mask = cv::Mat::zeros(height_, width_, CV_8UC1);
+  if (!started_ || !locked_ || mask.cols != width_ || mask.rows != height_) return;
+  const auto place = [this](const Eigen::Vector2d& patch_point) {
+    return pixel_of(last_.G_plane_patch, aligner_->bent(last_, patch_point));
+  };
+  tracking::mark_left_out(pyramid_.level(0), aligner_->patch(0), last_, place, mask);
 }
 
 }  // namespace heartservo::tracking

@@ -42,6 +42,8 @@ class PlanarTracker final : public TargetTracker {
 
   std::string start(const Frame& frame, const Quad& corners) override;
   Track track(const Frame& frame) override;
+  Eigen::Vector2d carry(const Eigen::Vector2d& start_px) const override;
+  void mark_left_out(cv::Mat& mask) override;
 
  private:
   struct Candidate {
@@ -50,6 +52,7 @@ class PlanarTracker final : public TargetTracker {
   };
 
   std::string unfit_texture() const;
+  Eigen::Vector2d pixel_of(const Eigen::Matrix3d& G_plane_patch, const Eigen::Vector2d& patch_point) const;
   Quad corners_of(const Eigen::Matrix3d& G_plane_patch) const;
   Eigen::Matrix3d shifted(const Eigen::Matrix3d& G_plane_patch, const Eigen::Vector2d& plane_shift) const;
   double quality_of(const Alignment& alignment, const Quad& expected) const;

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <string>
 
 #include "tracking/planar/track.hpp"
@@ -19,6 +20,16 @@ class TargetTracker {
 
   /// Follows the region into the next frame. Never throws for a bad picture: the state says LOST.
   virtual Track track(const Frame& frame) = 0;
+
+  /// Where a point of the region (px, in the frame it was learnt from) lies in the frame last tracked, under this
+  /// tracker's model of how the region changes its shape; while LOST, where it was last believed to be.
+  virtual Eigen::Vector2d carry(const Eigen::Vector2d& start_px) const = 0;
+
+  /// What the last frame's result does not rest on: sets `mask` (CV_8UC1, as large as the picture, made where it is
+  /// empty) to 255 at pixels of the region taken for glare, a tool or other strange things. Call it before the frame's
+  /// pixels go away. Leaves the other pixels alone, so that several trackers can share a mask. For people to look at:
+  /// not meant for every frame of a fast loop.
+  virtual void mark_left_out(cv::Mat& mask) = 0;
 };
 
 }  // namespace heartservo::tracking

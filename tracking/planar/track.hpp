@@ -20,7 +20,10 @@ struct Track {
   std::uint64_t sequence = 0;  ///< of the frame
   TrackState state = TrackState::LOST;
   double quality = 0;  ///< 0 (nothing in common with the template) to 1 (identical)
-  Quad corners{};      ///< px, in the picture as taken (distorted)
+  /// px, in the picture as taken (distorted). A tracker that bends the region gives its local homography: the corners
+  /// as they would lie were the whole region shaped like its centre.
+  Quad corners{};
+  Eigen::Vector2d target = Eigen::Vector2d::Zero();  ///< px: where the centre of the region learnt now lies
   Eigen::Matrix3d H_current_reference = Eigen::Matrix3d::Identity();  ///< on the undistorted pixel plane, det 1
   double gain = 1;                                                    ///< template grey = gain * picture grey + bias
   double bias = 0;                                                    ///< grey levels

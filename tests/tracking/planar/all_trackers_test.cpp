@@ -194,6 +194,32 @@ TEST_P(AllTrackers, ReadsPicturesThatArePartsOfLargerOnes) {
   EXPECT_LT(corner_error(track, moved_by(2, 1)), nature().shift_px);
 }
 
+TEST_P(AllTrackers, CarriesPointsOfTheRegion) {
+  const auto tracker = started();
+  const Track track = tracker->track(frame_of(picture(moved_by(5, -3)), 1));
+  const double bound = nature().shift_px;
+  EXPECT_LT((track.target - Eigen::Vector2d(135, 107)).norm(), bound);
+  EXPECT_LT((tracker->carry({130, 110}) - track.target).norm(), 1e-6);
+  for (const auto& corner : kRegion)
+    EXPECT_LT((tracker->carry(corner) - corner - Eigen::Vector2d(5, -3)).norm(), bound + 0.02);
+}
+
+TEST_P(AllTrackers, MarksGlareInItsRegionAsLeftOut) {
+  const auto tracker = started();
+  cv::Mat glary = picture(moved_by(2, 1));
+  const cv::Rect glare(125, 100, 9, 9);
+  glary(glare).setTo(255);
+  const Track track = tracker->track(frame_of(glary, 1));
+  ASSERT_NE(track.state, TrackState::LOST);
+  cv::Mat mask;
+  tracker->mark_left_out(mask);
+  ASSERT_EQ(mask.size(), glary.size());
+  EXPECT_EQ(cv::countNonZero(mask(glare)), 81);
+  mask(cv::Rect(120, 95, 19, 19)).setTo(0);
+  // correlation and ViSP's trackers do not leave glare out of their alignment: they lie beside the place and see more
+  EXPECT_LT(cv::countNonZero(mask), GetParam() == "esm" ? 20 : 3600 / 4);
+}
+
 TEST_P(AllTrackers, DoesNotNeedTheMemoryOfFramesGone) {
   cv::Mat memory = picture();
   const auto tracker = started(memory);
