@@ -20,10 +20,18 @@ constexpr double kSmallestGradient = 1.5;   // grey/px, RMS in the direction wit
 constexpr double kVisibleShare = 0.5;       // a template that fits on fewer points loses quality
 constexpr double kSmallSurprise = 1.2;      // px between foreseen and found place that one level copes with
 constexpr double kSuddenFall = 0.06;        // of the quality, against the last frames
+constexpr double kLeap = 0.2;               // of the side: mean distance of the corners from where they were foreseen
+constexpr double kLikeBefore = 0.03;        // of the quality, between before a loss and after, with noise half again
 constexpr double kLargestGrowth = 1.6;      // of the area, between two frames
 constexpr double kLargestScale = 2.5;       // of the side, against the reference
 constexpr double kLikelyPerspective = 1.4;  // a 10 mm region 45 mm away, tilted by 60 degrees, has 1.21
 constexpr double kLikelyAnisotropy = 2;     // tilted by 60 degrees
+
+double mean_distance(const Quad& a, const Quad& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) sum += (a[i] - b[i]).norm() / 4;
+  return sum;
+}
 
 Eigen::Matrix3d intrinsics(const Camera& c) {
   Eigen::Matrix3d K;
@@ -148,6 +156,12 @@ PlanarTracker::Candidate PlanarTracker::try_from(const Alignment& start, int coa
   return stiff.quality > c.quality ? stiff : c;
 }
 
+// What looks like the region somewhere else has to look as the region did: how much of the template fits elsewhere
+// depends on the tissue, how well the template fits its own place on the noise.
+double PlanarTracker::found_again_quality() const {
+  return std::max(options_.reacquire_quality, usual_quality_ - kLikeBefore - 0.5 * (1 - usual_quality_));
+}
+
 PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
   const Quad last = corners_of(last_.G_plane_patch);
   Alignment predicted = last_;
@@ -156,17 +170,23 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
   // A motion that was foreseen well needs no coarse levels.
   const int needed = surprise_px_ < kSmallSurprise ? 1 : surprise_px_ < 3 * kSmallSurprise ? 2 : options_.levels;
   build_pyramid(frame.grey, last, expected, 0.35 * side_px_, std::min(needed, options_.levels));
-  Candidate best = try_from(predicted, needed - 1, last);
+  const double leap_px = std::isfinite(surprise_px_) ? kLeap * side_px_ : options_.search_px;
+  Candidate best;
+  const auto keep = [&](Candidate c) {
+    if (c.quality < found_again_quality() && mean_distance(corners_of(c.alignment.G_plane_patch), expected) > leap_px)
+      return;  // found, not followed
+    if (c.quality > best.quality) best = c;
+  };
+  keep(try_from(predicted, needed - 1, last));
   // A sudden fall of the quality may be a wrong place that happens to look alike: look further before believing it.
   const double wanted = std::max(options_.ok_quality, usual_quality_ - kSuddenFall);
   if (best.quality < wanted) {
     build_pyramid(frame.grey, last, expected, 0.35 * side_px_, options_.levels);
-    for (const Alignment* start : {&predicted, &last_})
-      if (Candidate c = try_from(*start, options_.levels - 1, last); c.quality > best.quality) best = c;
+    for (const Alignment* start : {&predicted, &last_}) keep(try_from(*start, options_.levels - 1, last));
   }
   if (best.quality < wanted) {
     build_pyramid(frame.grey, last, last, options_.search_px + 0.35 * side_px_, options_.levels);
-    if (Candidate found = search(last, options_.search_px, 3); found.quality > best.quality) best = found;
+    keep(search(last, options_.search_px, 3));
   }
   surprise_px_ =
       best.quality > 0 ? (centre(corners_of(best.alignment.G_plane_patch)) - centre(expected)).norm() : INFINITY;
@@ -249,7 +269,7 @@ Track PlanarTracker::track(const Frame& frame) {
     if (locked_) found = follow(frame);
     if (!(found.quality >= options_.uncertain_quality)) {
       found = reacquire(frame.grey);
-      if (!(found.quality >= options_.reacquire_quality)) {
+      if (!(found.quality >= found_again_quality())) {
         found.quality = 0;
         locked_ = false;
       }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tracking/camera/camera.hpp"
+#include "tracking/planar/composite_options.hpp"
 #include "tracking/planar/patch_aligner.hpp"
 #include "tracking/planar/target_tracker.hpp"
 #include "tracking/settings/fields.hpp"
@@ -19,6 +20,7 @@ struct TrackerOptions {
   double uncertain_quality = 0.6;   ///< at least this: UNCERTAIN; below: LOST
   double corner_sigma_px = 0.05;    ///< standard deviation of a tracked corner, for the covariance of the pose
   double search_px = 24;            ///< how far from the expected place to search before giving the region up
+  CompositeOptions composite;
 
   void fields(FieldVisitor& v) {
     v.field({"levels", "", "pyramid levels at most; small regions use fewer", 1, 6}, levels);
@@ -31,6 +33,8 @@ struct TrackerOptions {
             corner_sigma_px);
     v.field({"search_px", "px", "how far around the expected place to search before giving the region up", 0, 500},
             search_px);
+    v.group("composite", "of the tracker `composite`: how candidates are compared by squared differences and texture",
+            composite);
   }
 };
 
@@ -57,6 +61,7 @@ class PlanarTracker final : public TargetTracker {
   Eigen::Matrix3d shifted(const Eigen::Matrix3d& G_plane_patch, const Eigen::Vector2d& plane_shift) const;
   double quality_of(const Alignment& alignment, const Quad& expected) const;
   Candidate try_from(const Alignment& start, int coarsest, const Quad& expected);
+  double found_again_quality() const;
   Candidate follow(const Frame& frame);
   Candidate search(const Quad& around, double radius_px, int candidates);
   Candidate reacquire(const cv::Mat& grey);

@@ -1,5 +1,6 @@
 #include "tracking/planar/registry.hpp"
 
+#include "tracking/planar/composite_aligner.hpp"
 #include "tracking/planar/correlation_aligner.hpp"
 #include "tracking/planar/esm_aligner.hpp"
 #include "tracking/planar/optical_flow_aligner.hpp"
@@ -14,6 +15,12 @@ std::unique_ptr<TargetTracker> make_esm(const Camera& camera, const TrackerOptio
   EsmOptions esm;
   esm.max_iterations = options.max_iterations;
   return std::make_unique<PlanarTracker>(make_esm_aligner(esm), camera, options);
+}
+
+std::unique_ptr<TargetTracker> make_composite(const Camera& camera, const TrackerOptions& options) {
+  EsmOptions esm;
+  esm.max_iterations = options.max_iterations;
+  return std::make_unique<PlanarTracker>(make_composite_aligner(options.composite, esm), camera, options);
 }
 
 std::unique_ptr<TargetTracker> make_ssd(const Camera& camera, const TrackerOptions& options) {
@@ -42,6 +49,7 @@ const Registry<TargetTracker, const Camera&, const TrackerOptions&>& trackers() 
   static const Registry<TargetTracker, const Camera&, const TrackerOptions&> registry(
       "tracker",
       {{"esm", "homography by efficient second-order minimisation, gain and bias, robust", make_esm},
+       {"composite", "candidates by squared differences and texture, then the homography as esm", make_composite},
        {"ssd", "homography by Gauss-Newton on the squared differences, no gain, not robust", make_ssd},
        {"correlation", "translation by zero-mean normalised correlation, exhaustive", make_correlation},
        {"optical_flow", "homography from pyramidal Lucas-Kanade, chained from frame to frame", make_optical_flow},

@@ -26,6 +26,7 @@ struct Nature {
 };
 const std::map<std::string, Nature> kNatures = {
     {"esm", {0.02, 0.03}},
+    {"composite", {0.02, 0.03}},
     {"ssd", {0.02, 0.03}},
     {"correlation", {0.03, 0, false}},
     {"optical_flow", {0.3, 0.4}},  // chained: the errors of all frames add up
