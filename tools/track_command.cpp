@@ -170,7 +170,8 @@ std::vector<TrackLane> started_lanes(const TrackOptions& o, const Tracked& track
 
 std::vector<PaperTable> paper_tables(const Tracked& tracked, const nlohmann::json& trackers) {
   if (!tracked.sequence) return {};
-  if (tracked.sequence->sequence == "table5") return {paper_table_5(trackers, tracked.sequence->noise_grey)};
+  if (tracked.sequence->sequence == "table5")
+    return {paper_table_5(trackers, tracked.sequence->noise_grey, tracked.sequence->speculars)};
   if (tracked.sequence->sequence == "circle") return {paper_figure_7(trackers, tracked.sequence->speculars)};
   return {};
 }

@@ -64,6 +64,22 @@ bool looks_like_number(const std::string& cell) {
   return cell.empty() || cell == "-" || cell.find_first_not_of("+-.0123456789") == std::string::npos;
 }
 
+std::string why_not_the_same(double noise_grey, int speculars) {
+  const std::string zeros = fmt::format(
+      "Ours differ because the patch here moves by fractions of a pixel in pictures of 8 bit{}, so that no tracker "
+      "reaches 0 (the paper's zeros are what two decimals show), and because ",
+      noise_grey > 0 ? fmt::format(" with noise of {:g} grey levels", noise_grey) : "");
+  if (speculars > 0)
+    return zeros + fmt::format(
+                       "{} moving speculars lie over it, which correlation, ssd and optical_flow do not leave out: how "
+                       "far that throws them depends on the glare, which the paper does not state.",
+                       speculars);
+  return zeros +
+         "ssd and optical_flow here start from a predicted place, on a pyramid: without glare that leaves ssd nothing "
+         "to "
+         "go wrong with, and optical_flow only the drift of chaining frames. Add --speculars 2 for the printed order.";
+}
+
 }  // namespace
 
 ReportTable tracker_table(const json& summary) {
@@ -126,17 +142,12 @@ ReportTable tracker_table(const json& summary) {
   return table;
 }
 
-PaperTable paper_table_5(const json& trackers, double noise_grey) {
+PaperTable paper_table_5(const json& trackers, double noise_grey, int speculars) {
   PaperTable result;
-  result.table = {
-      "Table 5 of the paper: vertical translation, error in px",
-      {"tracker", "paper mean", "paper std", "here mean", "here std"},
-      {},
-      fmt::format("Ours differ because the patch here moves by fractions of a pixel in pictures of 8 bit{}, so that no "
-                  "tracker reaches 0 (the paper's zeros are what two decimals show), and because ssd and "
-                  "optical_flow here start from a predicted place, on a pyramid: that leaves ssd nothing to "
-                  "go wrong with, and optical_flow only the drift of chaining frames.",
-                  noise_grey > 0 ? fmt::format(" with noise of {:g} grey levels", noise_grey) : "")};
+  result.table = {"Table 5 of the paper: vertical translation, error in px",
+                  {"tracker", "paper mean", "paper std", "here mean", "here std"},
+                  {},
+                  why_not_the_same(noise_grey, speculars)};
   result.summary = {{"what", "table 5"}, {"rows", json::array()}};
   for (const auto& printed : kPrinted) {
     const json lane = lane_of(trackers, printed.tracker);

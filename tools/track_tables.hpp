@@ -17,8 +17,8 @@ struct PaperTable {
 ReportTable tracker_table(const nlohmann::json& summary);
 
 /// Table 5 of Sauvee et al. 2007 (artificial sequence `table5`): mean and standard deviation of the error beside those
-/// of the run's trackers. `noise_grey`: standard deviation of the run's noise, for the note.
-PaperTable paper_table_5(const nlohmann::json& trackers, double noise_grey);
+/// of the run's trackers. `noise_grey` (standard deviation) and `speculars` (number) are the run's, for the note.
+PaperTable paper_table_5(const nlohmann::json& trackers, double noise_grey, int speculars);
 
 /// Their Fig. 7 (artificial sequence `circle`): which trackers lose the pattern, and when.
 PaperTable paper_figure_7(const nlohmann::json& trackers, int speculars);

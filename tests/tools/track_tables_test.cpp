@@ -61,7 +61,7 @@ TEST(TrackTables, ShowThePointWithItsBound) {
 
 TEST(TrackTables, Table5StandsBesideThePrintedOne) {
   const PaperTable paper =
-      paper_table_5({lane("esm", error(0.0125, 0.0025)), lane("optical_flow", error(0.5, 0.25))}, 2);
+      paper_table_5({lane("esm", error(0.0125, 0.0025)), lane("optical_flow", error(0.5, 0.25))}, 2, 0);
   ASSERT_EQ(paper.table.rows.size(), 5u);
   const std::vector<std::vector<std::string>> expected{{"Correlation", "0.00", "0.00", "-", "-"},
                                                        {"SSD", "0.04", "0.19", "-", "-"},
@@ -73,7 +73,8 @@ TEST(TrackTables, Table5StandsBesideThePrintedOne) {
   EXPECT_EQ(paper.table.rows[4][0], "ESM");
   EXPECT_NE(paper.table.note.find("Ours differ because"), std::string::npos);
   EXPECT_NE(paper.table.note.find("noise of 2 grey levels"), std::string::npos) << paper.table.note;
-  EXPECT_EQ(paper_table_5({}, 0).table.note.find("noise"), std::string::npos);
+  EXPECT_EQ(paper_table_5({}, 0, 0).table.note.find("noise"), std::string::npos);
+  EXPECT_NE(paper_table_5({}, 0, 3).table.note.find("3 moving speculars"), std::string::npos);
   const json& row = paper.summary["rows"][1];
   EXPECT_EQ(row["tracker"], "ssd");
   EXPECT_EQ(row["paper_px"], (json{{"mean", 0.04}, {"std", 0.19}}));
