@@ -84,6 +84,7 @@ class Problem {
     for (std::size_t p = 0; p < positions_.size(); ++p)
       for (std::size_t side = 0; side < rig.cameras.size(); ++side)
         for (std::size_t i = 0; i < positions_[p].corners[side].size(); ++i) {
+          if (!positions_[p].corners[side][i].allFinite()) continue;
           const Eigen::Vector3d X = in_camera(rig, p, side, i);
           if (!(X.z() > 0)) return INFINITE;
           sum += (positions_[p].corners[side][i] - rig.cameras[side].project(X)).squaredNorm();
@@ -100,7 +101,8 @@ class Problem {
     NormalEquations n(layout_.size, positions_.size());
     for (std::size_t p = 0; p < positions_.size(); ++p)
       for (std::size_t side = 0; side < rig.cameras.size(); ++side)
-        for (std::size_t i = 0; i < positions_[p].corners[side].size(); ++i) add(n, rig, p, side, i);
+        for (std::size_t i = 0; i < positions_[p].corners[side].size(); ++i)
+          if (positions_[p].corners[side][i].allFinite()) add(n, rig, p, side, i);
     if (layout_.points >= 0) add_gauge(n, rig);
     return n;
   }
@@ -247,7 +249,7 @@ BoardAdjustment adjust_board_rig(const BoardRig& start, const std::vector<BoardP
   int measured = 0;
   for (const auto& position : positions)
     for (std::size_t side = 0; side < start.cameras.size(); ++side)
-      measured += 2 * static_cast<int>(position.corners[side].size());
+      for (const auto& corner : position.corners[side]) measured += corner.allFinite() ? 2 : 0;
   result.degrees_of_freedom = measured - problem.unknowns();
   const int wanted = problem.layout().points >= 0 ? problem.layout().points : problem.layout().size;
   result.inverse_information = Eigen::MatrixXd::Constant(wanted, wanted, INFINITE);

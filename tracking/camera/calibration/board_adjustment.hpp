@@ -14,7 +14,7 @@ namespace heartservo::tracking {
 /// The board at one place, as one or two cameras saw it (left first).
 struct BoardPosition {
   std::array<std::string, 2> names;  ///< of the pictures or lists
-  std::array<Corners, 2> corners;    ///< px; empty: not seen
+  std::array<Corners, 2> corners;    ///< px; empty: not seen; a corner that is not finite is left out
 };
 
 /// Everything that is estimated.
@@ -48,7 +48,8 @@ struct BoardAdjustment {
 BoardAdjustment adjust_board_rig(const BoardRig& start, const std::vector<BoardPosition>& positions,
                                  const FreeParts& free);
 
-/// Measured less computed corners (px) of one side at one position; empty where it did not see the board.
+/// Measured less computed corners (px) of one side at one position; empty where it did not see the board, NaN where a
+/// corner is left out.
 Corners board_residuals(const BoardRig& rig, const std::vector<BoardPosition>& positions, std::size_t position,
                         std::size_t side);
 

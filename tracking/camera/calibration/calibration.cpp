@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tracking/camera/calibration/calibration_start.hpp"
 #include "tracking/camera/calibration/disc_offset.hpp"
@@ -17,6 +18,7 @@ namespace {
 constexpr std::size_t FEWEST_VIEWS = 3;
 constexpr std::size_t FEWEST_VIEWS_FREE = 6;  // pictures, to tell the board's shape from the lens
 constexpr double BEST_CORNER_PX = 0.02;       // no detector is better; below, residuals say nothing about certainty
+constexpr double GROSS = 6;                   // standard deviations; chance gives it to one corner in 10^7
 constexpr double VAGUE = 0.05;                // of a focal length, or of the picture: not determined
 
 std::size_t views_of(const std::vector<BoardPosition>& positions, std::size_t side) {
@@ -29,15 +31,19 @@ const char* side_name(std::size_t sides, std::size_t side) {
 }
 
 // A disc's picture has its centre of gravity elsewhere than the picture of its centre: what was measured, less that.
-std::vector<BoardPosition> without_disc_offsets(const std::vector<BoardPosition>& measured, const BoardRig& rig,
+// Corners left out of `used` stay so.
+std::vector<BoardPosition> without_disc_offsets(const std::vector<BoardPosition>& measured,
+                                                const std::vector<BoardPosition>& used, const BoardRig& rig,
                                                 double diameter_m) {
-  auto result = measured;
+  auto result = used;
   for (std::size_t p = 0; p < result.size(); ++p)
     for (std::size_t side = 0; side < rig.cameras.size(); ++side) {
       const Eigen::Isometry3d T =
           side == 0 ? rig.T_left_board[p] : Eigen::Isometry3d(rig.T_right_left * rig.T_left_board[p]);
       for (std::size_t i = 0; i < result[p].corners[side].size(); ++i)
-        result[p].corners[side][i] -= disc_offset(rig.cameras[side], T, rig.points[i], diameter_m);
+        if (used[p].corners[side][i].allFinite())
+          result[p].corners[side][i] =
+              measured[p].corners[side][i] - disc_offset(rig.cameras[side], T, rig.points[i], diameter_m);
     }
   return result;
 }
@@ -49,10 +55,13 @@ class Calibrator {
 
   void fit_flat() {
     best_ = calibrate_one_camera(board_, width_, height_, positions_, 0);
-    if (sides_ == 2)
-      best_ = calibrate_two_cameras(board_, best_, calibrate_one_camera(board_, width_, height_, positions_, 1),
-                                    positions_);
+    if (sides_ == 2) {
+      const auto left = best_, right = calibrate_one_camera(board_, width_, height_, positions_, 1);
+      best_ = calibrate_two_cameras(board_, left, right, positions_);
+      pair_strain_ = std::sqrt(best_.sum_of_squares_px2 / (left.sum_of_squares_px2 + right.sum_of_squares_px2));
+    }
     correct_discs({});
+    drop_gross_errors({});
   }
 
   // Returns the F ratio of the free board against the flat one.
@@ -67,8 +76,23 @@ class Calibrator {
            (best_.sum_of_squares_px2 / best_.degrees_of_freedom);
   }
 
+  // Corners that a detector put elsewhere, or that a list has wrong: they are left out one view at a time, as long as
+  // there are any.
+  void drop_gross_errors(const FreeParts& free) {
+    for (int round = 0; round < 5; ++round) {
+      bool dropped = false;
+      for (std::size_t p = 0; p < positions_.size(); ++p)
+        for (std::size_t side = 0; side < sides_; ++side) dropped |= drop_from(p, side);
+      if (!dropped) return;
+      best_ = adjust_board_rig(best_.rig, positions_, free);
+    }
+  }
+
   const BoardAdjustment& best() const { return best_; }
-  const std::vector<BoardPosition>& positions() const { return positions_; }
+  const std::vector<BoardPosition>& positions() const { return positions_; }  // what is left out is not finite
+  const std::vector<BoardPosition>& measured() const { return measured_; }
+
+  double pair_strain() const { return pair_strain_; }
 
   // A corner's standard deviation, as the residuals show it.
   double sigma_px() const {
@@ -76,9 +100,40 @@ class Calibrator {
   }
 
  private:
+  bool drop_from(std::size_t p, std::size_t side) {
+    const Corners residuals = board_residuals(best_.rig, positions_, p, side);
+    std::vector<double> sizes;
+    for (const auto& r : residuals)
+      if (r.allFinite()) sizes.push_back(r.norm());
+    if (sizes.empty()) return false;
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    // the median length of a round Gaussian is 1.177 sigma
+    const double sigma = std::max({*middle / 1.177, robust_sigma(), BEST_CORNER_PX});
+    bool dropped = false;
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      if (!(residuals[i].norm() > GROSS * sigma)) continue;
+      positions_[p].corners[side][i].setConstant(std::numeric_limits<double>::quiet_NaN());
+      dropped = true;
+    }
+    return dropped;
+  }
+
+  // A corner's standard deviation from the median residual, which gross errors do not move.
+  double robust_sigma() const {
+    std::vector<double> sizes;
+    for (std::size_t p = 0; p < positions_.size(); ++p)
+      for (std::size_t side = 0; side < sides_; ++side)
+        for (const auto& r : board_residuals(best_.rig, positions_, p, side))
+          if (r.allFinite()) sizes.push_back(r.norm());
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return *middle / 1.177;
+  }
+
   void correct_discs(const FreeParts& free) {
     for (int round = 0; board_.disc_m > 0 && round < 3; ++round) {
-      positions_ = without_disc_offsets(measured_, best_.rig, board_.disc_m);
+      positions_ = without_disc_offsets(measured_, positions_, best_.rig, board_.disc_m);
       best_ = adjust_board_rig(best_.rig, positions_, free);
     }
   }
@@ -134,6 +189,7 @@ class Calibrator {
   std::size_t sides_;
   std::vector<BoardPosition> measured_, positions_;
   BoardAdjustment best_;
+  double pair_strain_ = 1;
 };
 
 // Evidence that chance gives less than once in a billion runs.
@@ -182,21 +238,32 @@ void require_determined(const Calibrator& calibrator, std::size_t sides) {
   }
 }
 
-CalibratedView view_of(const BoardRig& rig, const std::vector<BoardPosition>& positions, std::size_t p,
-                       std::size_t side) {
+CalibratedView view_of(const Calibrator& calibrator, std::size_t p, std::size_t side) {
+  const BoardRig& rig = calibrator.best().rig;
   CalibratedView view;
-  view.residuals = board_residuals(rig, positions, p, side);
-  view.seen = !view.residuals.empty();
+  const Corners used = board_residuals(rig, calibrator.positions(), p, side);
+  view.seen = !used.empty();
   if (!view.seen) return view;
-  double sum = 0;
-  for (const auto& r : view.residuals) {
-    sum += r.squaredNorm();
-    view.max_px = std::max(view.max_px, r.norm());
+  view.residuals = board_residuals(rig, calibrator.measured(), p, side);
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i].allFinite()) {
+      view.dropped.push_back(i);
+      continue;
+    }
+    view.residuals[i] = used[i];
+    sum += used[i].squaredNorm();
+    ++count;
+    view.max_px = std::max(view.max_px, used[i].norm());
   }
-  view.rms_px = std::sqrt(sum / static_cast<double>(view.residuals.size()));
+  view.rms_px = std::sqrt(sum / count);
   view.T_camera_board = side == 0 ? rig.T_left_board[p] : Eigen::Isometry3d(rig.T_right_left * rig.T_left_board[p]);
   view.tilt_rad = std::acos(std::min(1.0, std::abs(view.T_camera_board.linear()(2, 2))));
   return view;
+}
+
+double corners_used(const CalibratedView& view) {
+  return static_cast<double>(view.residuals.size() - view.dropped.size());
 }
 
 // Views whose RMS is far above that of their side.
@@ -218,9 +285,9 @@ CalibratedCamera camera_of(const Calibration& c, const BoardAdjustment& a, std::
   result.deviation = result.covariance.diagonal().cwiseSqrt();
   double sum = 0, count = 0;
   for (const auto& view : c.views)
-    for (const auto& r : view[side].residuals) {
-      sum += r.squaredNorm();
-      ++count;
+    if (view[side].seen) {
+      sum += view[side].rms_px * view[side].rms_px * corners_used(view[side]);
+      count += corners_used(view[side]);
     }
   result.rms_px = std::sqrt(sum / count);
   return result;
@@ -231,10 +298,15 @@ Calibration packed(const Board& board, const Calibrator& calibrator, std::size_t
   Calibration c;
   c.rig = a.rig;
   c.positions = calibrator.positions();
+  for (std::size_t p = 0; p < c.positions.size(); ++p)
+    for (std::size_t side = 0; side < sides; ++side)
+      for (std::size_t i = 0; i < c.positions[p].corners[side].size(); ++i)
+        if (auto& corner = c.positions[p].corners[side][i]; !corner.allFinite())
+          corner = calibrator.measured()[p].corners[side][i];
   c.sigma_px = calibrator.sigma_px();
   for (std::size_t p = 0; p < c.positions.size(); ++p) {
     c.views.emplace_back();
-    for (std::size_t side = 0; side < sides; ++side) c.views[p][side] = view_of(c.rig, c.positions, p, side);
+    for (std::size_t side = 0; side < sides; ++side) c.views[p][side] = view_of(calibrator, p, side);
   }
   for (std::size_t side = 0; side < sides; ++side) {
     mark_outliers(c, side, o.outlier_factor);
@@ -242,7 +314,7 @@ Calibration packed(const Board& board, const Calibrator& calibrator, std::size_t
   }
   double count = 0;
   for (const auto& views : c.views)
-    for (const auto& view : views) count += static_cast<double>(view.residuals.size());
+    for (const auto& view : views) count += corners_used(view);
   c.rms_px = std::sqrt(a.sum_of_squares_px2 / count);
   c.rig_covariance.setZero();
   if (sides == 2) c.rig_covariance = c.sigma_px * c.sigma_px * a.inverse_information.block<6, 6>(16, 16);
@@ -282,11 +354,13 @@ Calibration calibrate(const Board& board, int width, int height, std::size_t sid
     is_free = options.shape == BoardShape::FREE ||
               (is_beyond_chance(evidence, extra, free.best().degrees_of_freedom) && is_determined(free, sides));
   }
+  if (is_free) free.drop_gross_errors({true, true});
   const Calibrator& calibrator = is_free ? free : flat;
   require_determined(calibrator, sides);
   Calibration result = packed(board, calibrator, sides, options);
   result.free_board = is_free;
   result.shape_evidence = evidence;
+  result.pair_strain = calibrator.pair_strain();
   return result;
 }
 

@@ -30,10 +30,11 @@ struct CalibratedCamera {
 struct CalibratedView {
   bool seen = false;  ///< false: nothing below is valid
   bool outlier = false;
-  double rms_px = 0, max_px = 0;                                     ///< distances
+  double rms_px = 0, max_px = 0;                                     ///< distances of the corners used
   Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();  ///< m
   double tilt_rad = 0;                                               ///< of the board against the picture plane
-  Corners residuals;                                                 ///< px, measured less computed
+  Corners residuals;                                                 ///< px, measured less computed, of all corners
+  std::vector<std::size_t> dropped;  ///< corners far outside of what the view's others show, that were left out
 };
 
 struct Calibration {
@@ -46,7 +47,9 @@ struct Calibration {
   double sigma_px = 0;                               ///< standard deviation of a corner in u and in v
   bool free_board = false;                           ///< the board's shape was estimated
   double board_rms_m = 0, board_max_m = 0;           ///< how far its points are from their nominal places
-  double shape_evidence = 0;                         ///< F ratio of the free board against the flat one; 1 by chance
+  double pair_strain = 1;  ///< RMS of a flat board with both cameras in one rig, over that with each alone; 1 when they
+                           ///< are rigidly joined and took each pair at one time
+  double shape_evidence = 0;  ///< F ratio of the free board against the flat one; 1 by chance
 };
 
 /// `positions` hold one or two sides, each corner list of board.size() points in px; all views of one side have the

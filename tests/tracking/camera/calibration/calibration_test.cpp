@@ -116,6 +116,28 @@ TEST(Calibration, AnOutlierIsMarked) {
   for (std::size_t i = 0; i < positions.size(); ++i) EXPECT_EQ(c.views[i][0].outlier, i == 4) << i;
 }
 
+TEST(Calibration, CornersThatAreElsewhereAreLeftOutAndNamed) {
+  auto random = test::seeded();
+  auto positions = noisy(random, 9, 0.1);
+  positions[2].corners[0][17] += Eigen::Vector2d(5, -3);
+  positions[2].corners[0][40] += Eigen::Vector2d(0, 1.2);
+  positions[7].corners[0][0] += Eigen::Vector2d(-2, 0);
+  const auto c = calibrate_small(positions, BoardShape::FLAT);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto expected = i == 2   ? std::vector<std::size_t>{17, 40}
+                          : i == 7 ? std::vector<std::size_t>{0}
+                                   : std::vector<std::size_t>{};
+    EXPECT_EQ(c.views[i][0].dropped, expected) << i;
+    EXPECT_LT(c.views[i][0].max_px, 0.6);
+    EXPECT_FALSE(c.views[i][0].outlier);
+  }
+  EXPECT_NEAR(c.views[2][0].residuals[17].x(), 5, 0.5);
+  EXPECT_EQ(c.positions[2].corners[0][17], positions[2].corners[0][17]);
+  EXPECT_NEAR(c.sigma_px, 0.1, 0.01);
+  const CameraParameters e = error_of(c);
+  EXPECT_LT(e.dot(c.cameras[0].covariance.ldlt().solve(e)), 26.1);
+}
+
 // A board bent by 0.1 mm: nothing of it may remain in the camera.
 TEST(Calibration, ABentBoardIsSeenAndDoesNoHarm) {
   auto random = test::seeded();
