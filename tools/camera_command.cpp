@@ -45,7 +45,7 @@ json error_json(const tracking::PictureError& e) {
 }
 
 std::string error_text(const tracking::PictureError& e) {
-  return fmt::format("{:.3f} px RMS over the picture, {:.3f} px at most, at ({:.0f}, {:.0f})", e.rms_px, e.max_px,
+  return fmt::format("{:.3f} px RMS over the picture, {:.3f} px at most, at ({:.1f}, {:.1f})", e.rms_px, e.max_px,
                      e.worst_px.x(), e.worst_px.y());
 }
 
@@ -56,16 +56,14 @@ int run_convert(const CameraOptions& o) {
   // ViSP has a term of its own for the way from pixels to rays
   tracking::BackwardFit backward;
   if (format == CameraFormat::VISP && fit.camera.camera.has_distortion())
-    backward = tracking::fit_backward(fit.camera.camera);
-  const double worst = std::max(fit.error.max_px, backward.error.max_px);
-  if (worst > LARGEST_ERROR_PX && !o.force)
-    throw ConfigError(fmt::format(
-        "{}: {} cannot hold {}; the nearest camera is off by {}{}. Nothing was written; --force writes it", o.in,
-        tracking::name_of(format),
-        fit.lost.empty() ? "the inverse of k1" : fmt::format("{}", fmt::join(fit.lost, ", ")), error_text(fit.error),
-        backward.error.max_px > 0 ? ", from pixels to rays (kdu) by " + error_text(backward.error) : ""));
-  tracking::write_camera(fit.camera, format, o.out, std::filesystem::path(o.in).stem().string());
+    backward = tracking::fit_backward(fit.camera.camera, file.camera);
   const bool lossy = !fit.lost.empty();
+  if (lossy && std::max(fit.error.max_px, backward.error.max_px) > LARGEST_ERROR_PX && !o.force)
+    throw ConfigError(
+        fmt::format("{}: {} cannot hold {}; the nearest camera is off by {}{}. Nothing was written; --force writes it",
+                    o.in, tracking::name_of(format), fmt::join(fit.lost, ", "), error_text(fit.error),
+                    backward.error.max_px > 0 ? "; from pixels to rays (kdu) by " + error_text(backward.error) : ""));
+  tracking::write_camera(fit.camera, format, o.out, std::filesystem::path(o.in).stem().string(), backward.kdu);
   if (o.json) {
     const json result{{"command", "camera convert"},
                       {"version", HEARTSERVO_VERSION},
@@ -82,7 +80,8 @@ int run_convert(const CameraOptions& o) {
     fmt::print(
         "{}: {}\n{}: {}, {}\n", o.in, tracking::name_of(file.format), o.out, tracking::name_of(format),
         lossy ? fmt::format("without {}: {}", fmt::join(fit.lost, ", "), error_text(fit.error)) : "nothing is lost");
-    if (backward.error.max_px > 0) fmt::print("from pixels to rays (kdu): {}\n", error_text(backward.error));
+    if (backward.error.max_px > 0)
+      fmt::print("from pixels to rays ViSP has one term (kdu): {}\n", error_text(backward.error));
   }
   return DONE;
 }
@@ -161,10 +160,10 @@ Command add_camera_command(CLI::App& program) {
   app->require_subcommand(1);
 
   CLI::App* convert = app->add_subcommand("convert", "ROS YAML, OpenCV YAML or XML, ViSP XML, Matlab toolbox .m");
-  convert->add_option("in", o.in, "camera file; its content tells the format")->required()->type_name("IN");
-  convert->add_option("out", o.out, "file to write; .yaml is ROS, .xml ViSP, .m Matlab, unless --to says otherwise")
+  convert->add_option("IN", o.in, "camera file; its content tells the format")->required()->type_name("FILE");
+  convert->add_option("OUT", o.out, "file to write; .yaml is ROS, .xml ViSP, .m Matlab, unless --to says otherwise")
       ->required()
-      ->type_name("OUT");
+      ->type_name("FILE");
   convert->add_option("--to", o.to, "format to write")->check(one_of(tracking::camera_format_names()));
   convert->add_option("--terms", o.terms, "4: k1 k2 k3 k4 only, as heartservo reads; all (default): what OUT can hold")
       ->check(one_of({"4", "all"}));
@@ -174,7 +173,7 @@ Command add_camera_command(CLI::App& program) {
   convert->footer("Example: heartservo camera convert scenes/cameras/sauvee_2007.yaml Calib_Results.m");
 
   CLI::App* show = app->add_subcommand("show", "a camera file, legibly");
-  show->add_option("file", o.in, "camera file")->required()->type_name("FILE");
+  show->add_option("FILE", o.in, "camera file")->required()->type_name("");
   show->add_flag("--json", o.json, "as JSON and nothing else");
   show->footer("Example: heartservo camera show scenes/cameras/sauvee_2007.yaml");
   app->footer("Example: heartservo camera show scenes/cameras/sauvee_2007.yaml");

@@ -116,18 +116,19 @@ cv::Mat draw_volume_coverage(const CalibrationRun& run, std::size_t side) {
   return image;
 }
 
-cv::Mat draw_board_shape(const CalibrationRun& run) {
+cv::Mat draw_board_shape(const CalibrationRun& run, double& largest_m) {
   const auto& board = run.views.board;
   const int cell = std::clamp(900 / std::max(1, board.columns), 8, 48);
   cv::Mat image(cell * board.rows, cell * board.columns, CV_8UC3, WHITE);
   const auto nominal = board.points();
-  double largest = 1e-9;
+  largest_m = 1e-9;
   for (std::size_t i = 0; i < nominal.size(); ++i)
-    largest = std::max(largest, std::abs(run.calibration.rig.points[i].z() - nominal[i].z()));
+    largest_m = std::max(largest_m, std::abs(run.calibration.rig.points[i].z() - nominal[i].z()));
   for (int r = 0; r < board.rows; ++r)
     for (int c = 0; c < board.columns; ++c) {
       const auto i = static_cast<std::size_t>(r * board.columns + c);
-      const double share = (run.calibration.rig.points[i].z() - nominal[i].z()) / largest;  // z is away from the camera
+      const double share =
+          (run.calibration.rig.points[i].z() - nominal[i].z()) / largest_m;  // z is away from the camera
       const cv::Scalar end = share > 0 ? colour(0) : colour(1);
       cv::rectangle(image, {c * cell, r * cell, cell, cell}, WHITE + std::abs(share) * (end - WHITE), cv::FILLED);
     }

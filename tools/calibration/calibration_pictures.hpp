@@ -16,7 +16,8 @@ cv::Mat draw_errors(const CalibrationRun& run, std::size_t side, double& reach_p
 /// The slices of the working volume from near to far, with the number of board points in each cell.
 cv::Mat draw_volume_coverage(const CalibrationRun& run, std::size_t side);
 
-/// How far the board's points are from the print, along the board's normal, from blue (behind) to orange (in front).
-cv::Mat draw_board_shape(const CalibrationRun& run);
+/// How far the board's points are from the print, along the board's normal, from blue (behind) to orange (in front);
+/// `largest_m` comes out as the full colours'.
+cv::Mat draw_board_shape(const CalibrationRun& run, double& largest_m);
 
 }  // namespace heartservo::tools

@@ -99,12 +99,14 @@ Report calibration_report(const CalibrationRun& run, const json& s, const std::s
     add_pictures(run, side, report.pictures);
     report.tables.push_back(parameter_table(s["cameras"][side], several));
   }
-  if (run.calibration.free_board)
-    report.pictures.push_back(
-        {fmt::format("The board's shape: orange towards the camera, blue away from it, up to {:.3f} mm "
-                     "off the print.",
-                     1e3 * run.calibration.board_max_m),
-         draw_board_shape(run)});
+  if (run.calibration.free_board) {
+    double largest_m = 0;
+    const cv::Mat shape = draw_board_shape(run, largest_m);
+    report.pictures.push_back({fmt::format("The board's shape: orange towards the camera, blue away from it, up to "
+                                           "{:.3f} mm along its normal.",
+                                           1e3 * largest_m),
+                               shape});
+  }
   if (several) report.tables.push_back(stereo_table(s["stereo"]));
   for (std::size_t side = 0; side < run.views.sides; ++side)
     report.tables.push_back(view_table(s["cameras"][side], several));

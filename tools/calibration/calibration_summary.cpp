@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <filesystem>
 
 namespace heartservo::tools {
 
@@ -70,6 +71,8 @@ json stereo_json(const CalibrationRun& run) {
           {"strain", c.pair_strain}};
 }
 
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
 // "12, 40 and 3 others"; corners count from 0, as in corners.csv.
 std::string numbers_of(const std::vector<std::size_t>& dropped) {
   constexpr std::size_t MANY = 5;
@@ -92,10 +95,10 @@ void warn_of_side(const CalibrationRun& run, std::size_t side, std::vector<std::
   for (std::size_t p = 0; p < c.views.size(); ++p)
     if (c.views[p][side].outlier)
       add(fmt::format("{} fits worse than the others ({:.2f} px); look whether it is blurred, or leave it out",
-                      c.positions[p].names[side], c.views[p][side].rms_px));
+                      file_name(c.positions[p].names[side]), c.views[p][side].rms_px));
   for (std::size_t p = 0; p < c.views.size(); ++p)
     if (const auto& dropped = c.views[p][side].dropped; !dropped.empty())
-      add(fmt::format("{}: {} {} ({:.1f} px off) left out", c.positions[p].names[side],
+      add(fmt::format("{}: {} {} ({:.1f} px off) left out", file_name(c.positions[p].names[side]),
                       dropped.size() == 1 ? "corner" : "corners", numbers_of(dropped),
                       c.views[p][side].residuals[dropped[0]].norm()));
   const auto missing = run.picture[side].missing_parts();

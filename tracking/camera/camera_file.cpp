@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tracking/camera/camera_fit.hpp"
 #include "tracking/camera/camera_formats.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_reader.hpp"
@@ -145,10 +146,15 @@ Camera read_camera(const std::string& file) {
   return result.camera.camera;
 }
 
-void write_camera(const WideCamera& camera, CameraFormat format, const std::string& file, const std::string& name) {
+void write_camera(const WideCamera& camera, CameraFormat format, const std::string& file, const std::string& name,
+                  std::optional<double> kdu) {
   check(camera, file);
   if (format == CameraFormat::ROS) return write_whole_file(file, ros_text(camera, name));
-  if (format == CameraFormat::VISP) return write_whole_file(file, visp_text(camera.camera, name));
+  if (format == CameraFormat::VISP) {
+    const Camera& c = camera.camera;
+    return write_whole_file(file, visp_text(c, kdu ? *kdu : fit_backward(c, camera).kdu, name));
+  }
+
   if (format == CameraFormat::MATLAB) return write_whole_file(file, matlab_text(camera));
   write_whole_file(file, opencv_text(camera, std::filesystem::path(file).extension() == ".xml"));
 }

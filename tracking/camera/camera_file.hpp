@@ -48,9 +48,11 @@ CameraFile read_camera_file(const std::string& file);
 Camera read_camera(const std::string& file);
 
 /// Writes the file in one piece: it appears under its name only when complete. `camera` must have only the terms that
-/// the format can hold (terms_of()). Throws InputError: a camera that validate() refuses, a file that cannot be
-/// written. OPENCV writes XML for a name that ends in .xml, else YAML.
-void write_camera(const WideCamera& camera, CameraFormat format, const std::string& file, const std::string& name);
+/// the format can hold (camera_fit.hpp makes one). `kdu` is ViSP's way back; by default that of `camera`. Throws
+/// InputError: a camera that validate() refuses, a file that cannot be written. OPENCV writes XML for a name that ends
+/// in .xml, else YAML.
+void write_camera(const WideCamera& camera, CameraFormat format, const std::string& file, const std::string& name,
+                  std::optional<double> kdu = std::nullopt);
 
 /// write_camera() as ROS.
 void write_ros_camera(const Camera& camera, const std::string& file, const std::string& name);

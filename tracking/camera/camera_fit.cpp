@@ -119,8 +119,8 @@ CameraFit fit_camera(const WideCamera& from, const CameraTerms& terms) {
   return fit;
 }
 
-BackwardFit fit_backward(const Camera& camera) {
-  const Rays rays = rays_of({camera});
+BackwardFit fit_backward(const Camera& camera, const WideCamera& from) {
+  const Rays rays = rays_of(from);
   const Eigen::Array2d f(camera.fx, camera.fy);
   double numerator = 0, denominator = 0;
   for (std::size_t i = 0; i < rays.pixels.size(); ++i) {

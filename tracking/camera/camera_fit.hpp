@@ -28,11 +28,12 @@ struct CameraFit {
 /// must be valid. Where `from` has no other terms it comes back as it is.
 CameraFit fit_camera(const WideCamera& from, const CameraTerms& terms);
 
-/// ViSP's way back, pixel to metre: (xn, yn) = (1 + kdu rd^2)(xd, yd), kdu by least squares over the picture.
+/// ViSP's way back, pixel to metre: (xn, yn) = (1 + kdu rd^2)(xd, yd) with (xd, yd) by the focal lengths and the
+/// principal point of `visp`; kdu by least squares over the picture, so that the rays are those of `from`.
 struct BackwardFit {
   double kdu = 0;
-  PictureError error;
+  PictureError error;  ///< of the rays, times the focal lengths
 };
-BackwardFit fit_backward(const Camera& camera);
+BackwardFit fit_backward(const Camera& visp, const WideCamera& from);
 
 }  // namespace heartservo::tracking

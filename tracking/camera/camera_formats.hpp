@@ -22,8 +22,8 @@ std::string opencv_text(const WideCamera& camera, bool xml);
 
 /// ViSP XML; `text` is the content of `file`.
 CameraFile read_visp_camera(const std::string& text, const std::string& file);
-/// k1 becomes kud; kdu, the way back, is fitted (camera_fit.hpp).
-std::string visp_text(const Camera& camera, const std::string& name);
+/// k1 becomes kud; kdu is the way back (camera_fit.hpp).
+std::string visp_text(const Camera& camera, double kdu, const std::string& name);
 
 /// True for text that assigns fc, as Calib_Results.m does.
 bool is_matlab_camera(const std::string& text);

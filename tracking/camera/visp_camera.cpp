@@ -4,7 +4,6 @@
 
 #include <regex>
 
-#include "tracking/camera/camera_fit.hpp"
 #include "tracking/camera/camera_formats.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/quiet_streams.hpp"
@@ -73,7 +72,7 @@ CameraFile read_visp_camera(const std::string& text, const std::string& file) {
                    "perspectiveProjWithoutDistortion; save it again with vpXmlParserCamera");
 }
 
-std::string visp_text(const Camera& camera, const std::string& name) {
+std::string visp_text(const Camera& camera, double kdu, const std::string& name) {
   std::string plain;  // what needs no escaping in XML
   for (const char c : name) plain += c == '<' || c == '>' || c == '&' || c == '"' ? '_' : c;
   const auto model = [&](const char* type, const std::string& distortion) {
@@ -86,10 +85,9 @@ std::string visp_text(const Camera& camera, const std::string& name) {
       "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>{}</name>\n    <image_width>{}</image_width>\n    "
       "<image_height>{}</image_height>\n{}  </camera>\n</root>\n",
       plain, camera.width, camera.height,
-      camera.has_distortion()
-          ? model("perspectiveProjWithDistortion",
-                  fmt::format("      <kud>{}</kud>\n      <kdu>{}</kdu>\n", camera.k1, fit_backward(camera).kdu))
-          : model("perspectiveProjWithoutDistortion", ""));
+      camera.has_distortion() ? model("perspectiveProjWithDistortion",
+                                      fmt::format("      <kud>{}</kud>\n      <kdu>{}</kdu>\n", camera.k1, kdu))
+                              : model("perspectiveProjWithoutDistortion", ""));
 }
 
 }  // namespace heartservo::tracking

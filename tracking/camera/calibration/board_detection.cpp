@@ -138,6 +138,12 @@ bool detect_circles(const cv::Mat& grey, const Board& board, BoardDetection& fou
 
 BoardDetection detect_board(const cv::Mat& grey, const Board& board) {
   BoardDetection found;
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(grey, mean, deviation);
+  if (deviation[0] < 1) {  // not worth a search
+    found.problem = reason(grey, board);
+    return found;
+  }
   try {
     const bool is_there = board.kind == BoardKind::CHESSBOARD ? detect_chessboard(grey, board, found)
                                                               : detect_circles(grey, board, found);

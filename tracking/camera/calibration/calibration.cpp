@@ -19,6 +19,7 @@ constexpr std::size_t FEWEST_VIEWS = 3;
 constexpr std::size_t FEWEST_VIEWS_FREE = 6;  // pictures, to tell the board's shape from the lens
 constexpr double BEST_CORNER_PX = 0.02;       // no detector is better; below, residuals say nothing about certainty
 constexpr double GROSS = 6;                   // standard deviations; chance gives it to one corner in 10^7
+constexpr double TORN = 5;                    // times worse together than alone: no pair
 constexpr double VAGUE = 0.05;                // of a focal length, or of the picture: not determined
 
 std::size_t views_of(const std::vector<BoardPosition>& positions, std::size_t side) {
@@ -58,7 +59,13 @@ class Calibrator {
     if (sides_ == 2) {
       const auto left = best_, right = calibrate_one_camera(board_, width_, height_, positions_, 1);
       best_ = calibrate_two_cameras(board_, left, right, positions_);
-      pair_strain_ = std::sqrt(best_.sum_of_squares_px2 / (left.sum_of_squares_px2 + right.sum_of_squares_px2));
+      const double alone = left.sum_of_squares_px2 + right.sum_of_squares_px2;
+      if (alone > 1e-12) pair_strain_ = std::sqrt(best_.sum_of_squares_px2 / alone);
+      if (pair_strain_ > TORN)
+        throw InputError(
+            fmt::format("left and right views fit {:.0f} times worse together than alone; give both sides in the same "
+                        "order, and take the pictures of a pair at the same time",
+                        pair_strain_));
     }
     correct_discs({});
     drop_gross_errors({});
