@@ -25,6 +25,12 @@ struct BoardRig {
   std::vector<Eigen::Vector3d> points;                             ///< of the board, m
 };
 
+/// T_camera_board of one side at one position.
+inline Eigen::Isometry3d board_pose(const BoardRig& rig, std::size_t position, std::size_t side) {
+  const Eigen::Isometry3d& T_left_board = rig.T_left_board[position];
+  return side == 0 ? T_left_board : Eigen::Isometry3d(rig.T_right_left * T_left_board);
+}
+
 /// What may change. Poses of the board always do.
 struct FreeParts {
   bool cameras = true;  ///< and T_right_left
