@@ -85,13 +85,27 @@ void require_enough(const BoardViews& views) {
   }
 }
 
+tracking::StereoCamera stereo_of(const CalibrationRun& run) {
+  const auto& cameras = run.calibration.cameras;
+  return {cameras[0].camera, cameras[1].camera, run.calibration.rig.T_right_left};
+}
+
+void require_pair(const CalibrationRun& run) {
+  if (run.views.sides == 1) return;
+  const auto stereo = stereo_of(run);
+  if (!stereo.validate().empty())
+    throw InputError(
+        fmt::format("left and right camera would be {:.4g} mm apart, which no stereo endoscope is; are the "
+                    "sides the same pictures, or is --square-mm wrong?",
+                    1e3 * stereo.baseline_m()));
+}
+
 void write_cameras(const CalibrationRun& run, const RunFolder& folder) {
   const auto& cameras = run.calibration.cameras;
   tracking::write_ros_camera(cameras[0].camera, folder.file("camera.yaml").string(), side_name(run, 0));
   if (cameras.size() == 1) return;
   tracking::write_ros_camera(cameras[1].camera, folder.file("camera_right.yaml").string(), side_name(run, 1));
-  tracking::write_stereo_camera({cameras[0].camera, cameras[1].camera, run.calibration.rig.T_right_left},
-                                folder.file("stereo.yaml").string());
+  tracking::write_stereo_camera(stereo_of(run), folder.file("stereo.yaml").string());
 }
 
 int run_calibrate(CalibrateOptions o) {
@@ -105,6 +119,7 @@ int run_calibrate(CalibrateOptions o) {
   require_enough(views);
   auto calibration = tracking::calibrate(views.board, views.width, views.height, views.sides, views.positions, {shape});
   const auto run = calibration_run(std::move(views), std::move(calibration), volume);
+  require_pair(run);
   const auto summary = calibration_summary(run);
   const Report report = calibration_report(run, summary, config_of(o, run));
   RunFolder folder(run_path(o.run, "calibrate"));

@@ -155,11 +155,13 @@ BoardViews collect_views(const Board& board, const ViewSources& sources) {
     if (!position.corners[0].empty() || !position.corners[1].empty()) views.positions.push_back(std::move(position));
   }
   collector.finish();
-  if (views.positions.empty())
-    throw InputError(fmt::format("{}: {}{}", views.skipped[0].name, views.skipped[0].reason,
-                                 left.size() > 1 ? fmt::format(" (nor is there one in the other {} pictures{})",
-                                                               views.given - 1, counting_hint(board, left))
-                                                 : counting_hint(board, left)));
+  if (views.positions.empty()) {
+    const std::string others = views.given == 1   ? ""
+                               : views.given == 2 ? "; nor does the other view help"
+                                                  : fmt::format("; nor do the other {} views help", views.given - 1);
+    throw InputError(
+        fmt::format("{}: {}{}{}", views.skipped[0].name, views.skipped[0].reason, others, counting_hint(board, left)));
+  }
   return views;
 }
 

@@ -159,6 +159,9 @@ TEST_F(Calibrate, PairsBecomeAStereoCamera) {
   const Outcome shown = run({"camera", "show", "run/stereo.yaml"});
   EXPECT_NE(shown.out.find("baseline"), std::string::npos) << shown.out;
 
+  expect_refused(3, line({"--corners", "left", "--right", "left", "--size", "512,512", "--out", "twice"}),
+                 {"mm apart", "the same pictures"});
+  EXPECT_FALSE(fs::exists(folder_ / "twice.partial"));
   fs::remove(list("right", 8));
   expect_refused(2, words, {"--right has 8 views and the left side 9"});
   write_text(list("right", 8), read_text(list("right", 0)));
