@@ -72,7 +72,7 @@ void add_recording_options(CLI::App& command, RecordedOptions& o) {
       ->delimiter(',')
       ->expected(4)
       ->check(finite(-1e5, 1e5));
-  command.add_option("--camera", o.camera, "camera file (ROS, OpenCV, ViSP)")->type_name("FILE");
+  command.add_option("--camera", o.camera, "camera file (ROS, OpenCV, ViSP, Matlab)")->type_name("FILE");
   command.add_option("--frame-rate-hz", o.frame_rate_hz, "frames per second of recorded frames")
       ->check(finite(0.1, 10000));
 }

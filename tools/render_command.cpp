@@ -14,6 +14,7 @@
 #include "tools/progress.hpp"
 #include "tools/report/report.hpp"
 #include "tools/run_folder.hpp"
+#include "tools/track_truth.hpp"
 #include "tracking/camera/camera_file.hpp"
 #include "tracking/settings/errors.hpp"
 
@@ -85,6 +86,7 @@ int run_render(RenderOptions o) {
   const auto& table = rendering.table;
   const std::size_t expected = table->frames().frame_count().value_or(0);
   auto columns = corner_columns();
+  for (const auto& name : target_columns()) columns.push_back(name);
   if (rendering.metric)
     for (const char* name : {"truth/x_m", "truth/y_m", "truth/z_m"}) columns.emplace_back(name);
   TimeTable truth(columns, rows_ahead(expected));
@@ -101,6 +103,8 @@ int run_render(RenderOptions o) {
       const auto sample = table->truth(record);
       std::vector<double> row{record.frame.time_s};
       for (const auto& corner : *sample.corners_px) row.insert(row.end(), {corner.x(), corner.y()});
+      const Eigen::Vector2d target = true_target_px(*table, sample);
+      row.insert(row.end(), {target.x(), target.y()});
       if (sample.target) row.insert(row.end(), {sample.target->x(), sample.target->y(), sample.target->z()});
       truth.append(row);
       if (first.empty()) first = record.frame.grey.clone();

@@ -7,6 +7,7 @@
 #include "servo/loop/score.hpp"
 #include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
+#include "tools/album.hpp"
 #include "tools/command.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/loop_table.hpp"
@@ -30,7 +31,7 @@ constexpr double kMostUnscored = 0.9;  // share of a run that may be spent on se
 struct ServoOptions {
   RunOptions run;
   RecordedOptions recorded;
-  std::string tracker, predictor, controller, robot, reference;
+  std::string tracker, predictor, controller, robot, reference, point;
   double latency_ms = -1, settle_s = -1;
 };
 
@@ -77,6 +78,7 @@ sim::Scene configure(const ServoOptions& o) {
   choose(scene.engines.controller, o.controller, servo::control_laws());
   if (!o.robot.empty()) scene.robot.type = o.robot;
   if (!o.reference.empty()) scene.recording.reference = std::filesystem::absolute(o.reference).string();
+  if (!o.point.empty()) scene.recording.point = o.point;
   if (o.latency_ms >= 0) scene.loop.latency.set_total(1e-3 * o.latency_ms);
   if (o.settle_s >= 0) scene.settle_s = o.settle_s;
   if (o.run.frames && !scene.is_recorded()) fit_settling(scene, o, scene.frame_count(), scene.camera.frame_rate_hz);
@@ -84,57 +86,25 @@ sim::Scene configure(const ServoOptions& o) {
   return scene;
 }
 
-// Pictures worth a look: an early one, and the worst moment of the scored part.
-class Album {
- public:
-  explicit Album(double settle_s) : settle_s_(settle_s) {}
-
-  void look_at(const servo::LoopRecord& r, const servo::TruthSample& truth) {
-    if (r.frame.status != tracking::FrameStatus::OK) return;
-    const double t = r.frame.time_s, residual = (truth.tip_px - truth.goal_px).norm();
-    const bool settled = t >= settle_s_;
-    if (first_.empty() || (settled && !have_settled_)) {
-      first_ = drawn(r, truth);
-      first_time_ = t;
-      have_settled_ = settled;
-    }
-    if (settled && residual > worst_residual_) {
-      worst_residual_ = residual;
-      worst_ = drawn(r, truth);
-      worst_time_ = t;
-    }
-  }
-
-  std::vector<ReportPicture> pictures() const {
-    std::vector<ReportPicture> result;
-    const char* legend = "region (blue: followed), goal (ring), tip (cross)";
-    if (!first_.empty()) result.push_back({fmt::format("{:.2f} s: {}", first_time_, legend), first_});
-    if (!worst_.empty())
-      result.push_back(
-          {fmt::format("{:.2f} s: the worst moment, {:.1f} px from the goal", worst_time_, worst_residual_), worst_});
-    return result;
-  }
-
- private:
-  static cv::Mat drawn(const servo::LoopRecord& r, const servo::TruthSample& truth) {
-    cv::Mat canvas = canvas_of(r.frame);
-    draw_region(canvas, r.track);
-    draw_goal_and_tip(canvas, truth.goal_px, truth.tip_px);
-    return canvas;
-  }
-
-  double settle_s_, first_time_ = 0, worst_time_ = 0, worst_residual_ = 0;
-  bool have_settled_ = false;
-  cv::Mat first_, worst_;
-};
+ReportPicture overlay(const servo::LoopRecord& r, const servo::TruthSample& truth, tracking::TargetTracker& tracker) {
+  ReportPicture picture{"", canvas_of(r.frame), {region_key(r.track)}};
+  cv::Mat mask;
+  tracker.mark_left_out(mask);
+  if (tint_left_out(picture.bgr, mask)) picture.keys.push_back(left_out_key());
+  draw_region(picture.bgr, r.track);
+  draw_goal_and_tip(picture.bgr, truth.goal_px, truth.tip_px);
+  picture.keys.push_back(goal_and_tip_key());
+  return picture;
+}
 
 int run_servo(const ServoOptions& o) {
   if (o.run.list) return list_engines();
   sim::Scene scene = configure(o);
   const auto table = sim::make_table(scene);
   const servo::LoopOptions loop_options = sim::loop_options(scene, *table);
-  servo::Loop loop(table->frames(), table->robot(), sim::make_stages(scene, *table), loop_options,
-                   table->marker_to_tip(), now_s);
+  servo::LoopStages stages = sim::make_stages(scene, *table);
+  tracking::TargetTracker& tracker = *stages.target_tracker;  // for the pictures; the loop owns it
+  servo::Loop loop(table->frames(), table->robot(), std::move(stages), loop_options, table->marker_to_tip(), now_s);
   const auto picked = table->picked();
   if (const std::string why = loop.start(picked.target, picked.marker); !why.empty())
     throw ConfigError(fmt::format("{}: the region cannot be tracked: {}", o.run.source, why));
@@ -144,7 +114,7 @@ int run_servo(const ServoOptions& o) {
   TimeTable frames = make_loop_table(rows_ahead(expected));
   servo::Score score(scene.settle_s, 1 / loop_options.frame_rate_hz);
   score.reserve(rows_ahead(expected));
-  Album album(scene.settle_s);
+  Album album(expected, [](double px) { return fmt::format("{:.1f} px from the goal", px); });
   ServoRunFacts facts;
   RunFolder folder(run_path(o.run, "servo"));
   const double begin = now_s();
@@ -156,12 +126,17 @@ int run_servo(const ServoOptions& o) {
       const servo::TruthSample truth = table->truth(record);
       score.add(record, truth);
       append(frames, record, truth);
-      album.look_at(record, truth);
+      const double off_px = record.frame.time_s < scene.settle_s ? NAN : (truth.tip_px - truth.goal_px).norm();
+      if (record.frame.status == tracking::FrameStatus::OK)
+        album.look_at(
+            {frames.rows() - 1, record.frame.time_s, off_px, "", record.track.state == tracking::TrackState::LOST},
+            [&] { return overlay(record, truth, tracker); });
       progress.update(frames.rows());
     }
   }
   facts.scene = is_scene(o.run.source) ? stem_of(o.run.source) : o.run.source;
   facts.reference = table->reference();
+  facts.reference_point = table->reference_point();
   facts.camera = scene.camera.calibration.empty() ? "assumed pinhole" : scene.camera.calibration;
   facts.frame_rate_hz = loop_options.frame_rate_hz;
   facts.stop_reason = loop.stop_reason();
@@ -193,8 +168,10 @@ Command add_servo_command(CLI::App& program) {
   app->add_option("--depth-mm", o.recorded.depth_mm, "assumed distance of the region in recorded frames")
       ->check(finite(1, 10000));
   app->add_option("--reference", o.reference,
-                  "CSV time_s,u_px,v_px: where the region truly is, to score recorded frames")
+                  "CSV of annotated points (frame or time_s, point, u_px, v_px, visible), to score recorded frames")
       ->type_name("FILE");
+  app->add_option("--point", o.point, "which of them; default: the one inside the region nearest to its centre")
+      ->type_name("NAME");
   app->add_option("--tracker", o.tracker, "overrides the scene's tracker");
   app->add_option("--predictor", o.predictor, "overrides the scene's predictor");
   app->add_option("--controller", o.controller, "overrides the scene's control law");

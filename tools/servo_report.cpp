@@ -49,7 +49,7 @@ ReportTable residual_rows(const json& j) {
   }
   const json& px = j["residual_px"];
   table.rows.push_back({"in the picture, px", number(px["rms"], 2), number(px["p95"], 2), number(px["max"], 2)});
-  table.note = "Pixel residual scored against: " + px["reference"].get<std::string>();
+  table.note = "Pixel residual scored against: " + reference_text(px);
   return table;
 }
 
@@ -95,7 +95,7 @@ Report servo_report(const json& j, const TimeTable& table, std::vector<ReportPic
   report.headline_unit = unit + " RMS residual";
   if (!metric)
     report.notices.push_back("Recorded frames: no 3D truth. The pixel residual is scored against: " +
-                             j["residual_px"]["reference"].get<std::string>() + ". Depth is assumed.");
+                             reference_text(j["residual_px"]) + ". Depth is assumed.");
   if (const int lost = j["tracking"]["lost_frames"]; lost > 0)
     report.notices.push_back(fmt::format("The region was lost in {} of {} frames.", lost, j["frames"].get<int>()));
   if (!j["stop_reason"].is_null()) report.notices.push_back("Safety stop: " + j["stop_reason"].get<std::string>());
@@ -108,7 +108,7 @@ Report servo_report(const json& j, const TimeTable& table, std::vector<ReportPic
   report.pictures = std::move(pictures);
   report.tables = {residual_rows(j), run_rows(j)};
   report.table = &table;
-  report.state_column = "track/state";
+  report.states = {{"tracking", "track/state"}};
   report.config_yaml = config_yaml;
   report.summary = j;
   return report;

@@ -57,11 +57,10 @@ json servo_summary(const servo::ScoreSummary& s, const sim::Scene& scene, const 
   // a score of no frames is none: 0 would read as perfect
   const auto px = [&](double value) { return s.residual_px.count > 0 ? json(value) : json(); };
   j["motion_px"] = {{"rms", px(s.motion_px.rms)}};
-  j["residual_px"] = {{"rms", px(s.residual_px.rms)},
-                      {"p95", px(s.residual_px.p95)},
-                      {"max", px(s.residual_px.max)},
-                      {"frames", s.residual_px.count},
-                      {"reference", facts.reference}};
+  j["residual_px"] = {
+      {"rms", px(s.residual_px.rms)}, {"p95", px(s.residual_px.p95)},
+      {"max", px(s.residual_px.max)}, {"frames", s.residual_px.count},
+      {"reference", facts.reference}, {"point", facts.reference_point.empty() ? json() : json(facts.reference_point)}};
   j["tracking"] = {{"lost_frames", s.lost_frames},
                    {"uncertain_frames", s.uncertain_frames},
                    {"unreadable_frames", s.unreadable_frames},
@@ -84,6 +83,11 @@ json servo_summary(const servo::ScoreSummary& s, const sim::Scene& scene, const 
 
 std::string number(const json& value, int decimals) {
   return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : "-";
+}
+
+std::string reference_text(const json& residual_px) {
+  const std::string reference = residual_px["reference"];
+  return residual_px["point"].is_null() ? reference : reference + ", point " + residual_px["point"].get<std::string>();
 }
 
 std::string residual_table(const json& j) {
@@ -110,7 +114,7 @@ std::string residual_table(const json& j) {
   row("px", {"RMS", "95 %", "max"});
   row("motion", {number(j["motion_px"]["rms"], 2)});
   row("residual", {number(px["rms"], 2), number(px["p95"], 2), number(px["max"], 2)});
-  t += fmt::format("{:<22}{:>10}\n", "scored against", px["reference"].get<std::string>());
+  t += fmt::format("{:<22}{:>10}\n", "scored against", reference_text(px));
   t += fmt::format("\nmotion cancelled {} %, lost frames {}, uncertain {}, found again {}\n",
                    number(j["reduction_percent"], 1), j["tracking"]["lost_frames"].get<int>(),
                    j["tracking"]["uncertain_frames"].get<int>(), j["tracking"]["relocks"].get<int>());

@@ -13,9 +13,10 @@ namespace heartservo::tools {
 
 /// What a run is known by, beside its score.
 struct ServoRunFacts {
-  std::string scene;      ///< "pig_2007", or the source of a recorded run
-  std::string reference;  ///< of the pixel residual
-  std::string camera;     ///< calibration file or "assumed pinhole"
+  std::string scene;            ///< "pig_2007", or the source of a recorded run
+  std::string reference;        ///< of the pixel residual
+  std::string reference_point;  ///< the point of that file, "" where it names none
+  std::string camera;           ///< calibration file or "assumed pinhole"
   double frame_rate_hz = 0;
   double real_time_factor = 0;
   bool interrupted = false;
@@ -27,6 +28,9 @@ nlohmann::json servo_summary(const servo::ScoreSummary& score, const sim::Scene&
 
 /// The residual table for the terminal.
 std::string residual_table(const nlohmann::json& summary);
+
+/// What `residual_px` of the summary is scored against: "truth", or "points.csv, point C".
+std::string reference_text(const nlohmann::json& residual_px);
 
 /// A value of the summary for people: "0.412", or "-" where it is null.
 std::string number(const nlohmann::json& value, int decimals);

@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <stdexcept>
 
+#include "sim/table/csv_rows.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_reader.hpp"
 
@@ -27,39 +26,6 @@ namespace {
 std::string_view trimmed(std::string_view text) {
   const auto from = text.find_first_not_of(" \t");
   return from == text.npos ? "" : text.substr(from, text.find_last_not_of(" \t") - from + 1);
-}
-
-// Splits at commas into `cells` (kept between lines, so that reading allocates once).
-void split(std::string_view line, std::vector<std::string_view>& cells) {
-  cells.clear();
-  for (std::size_t comma; (comma = line.find(',')) != line.npos; line.remove_prefix(comma + 1))
-    cells.push_back(trimmed(line.substr(0, comma)));
-  cells.push_back(trimmed(line));
-}
-
-struct Lines {
-  std::string_view rest;
-  int number = 0;
-
-  // Skips empty lines; understands \r\n.
-  bool next(std::string_view& line) {
-    while (!rest.empty()) {
-      const auto end = std::min(rest.find('\n'), rest.size());
-      line = rest.substr(0, end);
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-      if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-      ++number;
-      if (!line.empty()) return true;
-    }
-    return false;
-  }
-};
-
-std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || !std::filesystem::is_regular_file(file))
-    throw InputError(fmt::format("{}: cannot be read; check the path and its permissions", file.string()));
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
@@ -117,35 +83,17 @@ void TimeTable::write_csv(const std::filesystem::path& file) const {
 }
 
 TimeTable TimeTable::read_csv(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
-  Lines lines{text};
-  if (lines.rest.starts_with("\xEF\xBB\xBF")) lines.rest.remove_prefix(3);
-  const auto fail = [&](const std::string& what) {
-    throw InputError(fmt::format("{}:{}: {}", file.string(), std::max(lines.number, 1), what));
-  };
-  std::string_view line;
-  std::vector<std::string_view> cells;
-  if (!lines.next(line)) fail("is empty; expected a header that begins with time_s");
-  split(line, cells);
+  sim::CsvRows rows(file, "a header that begins with time_s");
   try {
-    TimeTable table({cells.begin(), cells.end()}, static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
-    std::vector<double> row(cells.size());
-    while (lines.next(line)) {
-      split(line, cells);
-      if (cells.size() != row.size()) fail(fmt::format("{} cells under {} columns", cells.size(), row.size()));
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        row[i] = std::numeric_limits<double>::quiet_NaN();
-        const char* end = cells[i].data() + cells[i].size();
-        const auto [rest, error] = std::from_chars(cells[i].data(), end, row[i]);
-        if (!cells[i].empty() && (error != std::errc{} || rest != end))
-          fail(fmt::format("'{}' under {} is not a number", cells[i], table.names_[i]));
-      }
+    TimeTable table(rows.names(), rows.rows_ahead());
+    std::vector<double> row(table.names_.size());
+    while (rows.next()) {
+      for (std::size_t i = 0; i < row.size(); ++i) row[i] = rows.number(i);
       table.append(row);
     }
     return table;
   } catch (const std::invalid_argument& e) {
-    fail(e.what());
-    throw;
+    rows.fail(e.what());
   }
 }
 

@@ -15,8 +15,11 @@
 #include "tools/progress.hpp"
 #include "tools/report/report.hpp"
 #include "tools/run_folder.hpp"
-#include "tools/servo_summary.hpp"
+#include "tools/track_pictures.hpp"
+#include "tools/track_report.hpp"
 #include "tools/track_run.hpp"
+#include "tools/track_tables.hpp"
+#include "tools/track_truth.hpp"
 #include "tools/trajectory.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/landmark/square_refinement.hpp"
@@ -34,7 +37,7 @@ struct TrackOptions {
   std::vector<std::string> trackers;
   std::vector<double> corners;
   double square_mm = 0;
-  std::string truth;
+  std::string truth, points, point;
 };
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -49,18 +52,22 @@ struct Tracked {
   sim::Scene scene;  ///< of an artificial sequence only the trackers' options
   std::unique_ptr<sim::Table> table;
   std::string config;
+  std::string points, point;  ///< file of annotated points, and which of them; "" for none
+  std::optional<sim::SequenceOptions> sequence;
 };
 
 Tracked artificial(const TrackOptions& o) {
   if (!o.recorded.roi.empty() || !o.recorded.camera.empty() || o.recorded.frame_rate_hz > 0 || !o.corners.empty() ||
-      !o.truth.empty() || o.square_mm > 0)
+      !o.truth.empty() || !o.points.empty() || !o.point.empty() || o.square_mm > 0)
     throw ConfigError(
-        "--roi, --corners, --camera, --frame-rate-hz, --square-mm and --truth are for recorded frames; "
+        "--roi, --corners, --camera, --frame-rate-hz, --square-mm, --truth, --points and --point are for recorded "
+        "frames; "
         "an artificial sequence knows its region and truth");
   const sim::SequenceOptions options = sequence_for(o.artificial, o.run);
   Tracked tracked;
   tracked.table = sim::make_sequence_table(options);
   tracked.config = config_text(options, tracked.scene.tracking, "track");
+  tracked.sequence = options;
   return tracked;
 }
 
@@ -69,8 +76,10 @@ sim::Scene configure(const TrackOptions& o) {
   scene.show_tool = false;
   if (scene.settle_s >= scene.duration_s) scene.settle_s = 0;  // nothing is scored by time here
   sim::require_valid(scene, o.run.source);
-  if (!scene.is_recorded() && (!o.corners.empty() || !o.truth.empty()))
-    throw ConfigError("--corners and --truth are for recorded frames; a simulated scene knows both");
+  if (!scene.is_recorded() && (!o.corners.empty() || !o.truth.empty() || !o.points.empty() || !o.point.empty()))
+    throw ConfigError("--corners, --truth, --points and --point are for recorded frames; a simulated scene knows them");
+  if (!o.point.empty() && o.points.empty() && scene.recording.reference.empty())
+    throw ConfigError(fmt::format("--point {} needs --points FILE, which has the point", o.point));
   if (!o.corners.empty() && !o.recorded.roi.empty()) throw ConfigError("give --roi or --corners, not both");
   if (o.square_mm > 0 && scene.is_recorded() && scene.camera.calibration.empty())
     throw ConfigError("--square-mm needs --camera FILE: without a calibration there are no millimetres");
@@ -95,7 +104,16 @@ Tracked opened(const TrackOptions& o, const CornerTruth* truth) {
   // pictures carry no clock: where the command line gives none they run on that of their truth
   if (truth && o.recorded.frame_rate_hz == 0 && !is_scene(o.run.source) && are_pictures(o.run.source))
     scene.camera.frame_rate_hz = truth->frame_rate_hz();
-  return {scene, sim::make_table(scene), config_text(scene, "track")};
+  const std::string config = config_text(scene, "track");
+  Tracked tracked{scene, nullptr, config, o.points, o.point, {}};
+  if (o.points.empty() && !scene.recording.reference.empty()) {
+    tracked.points = sim::resolve(scene, scene.recording.reference);
+    if (o.point.empty()) tracked.point = scene.recording.point;
+  }
+  // the score of this command is its own, and so may be the region
+  scene.recording.reference.clear();
+  tracked.table = sim::make_table(scene);
+  return tracked;
 }
 
 tracking::Quad region_for(const TrackOptions& o, const sim::HandPicked& picked) {
@@ -105,43 +123,65 @@ tracking::Quad region_for(const TrackOptions& o, const sim::HandPicked& picked) 
   return quad;
 }
 
-Report track_report(const nlohmann::json& summary, const std::vector<TrackLane>& lanes,
-                    std::vector<ReportPicture> pictures, const std::string& config) {
-  Report report;
-  report.title = "track " + summary["source"].get<std::string>();
-  const auto& first = summary["trackers"][0];
-  const int lost = first["lost_frames"], frames = summary["frames"];
-  report.headline = fmt::format("{} followed the region in {} of {} frames.", first["name"].get<std::string>(),
-                                frames - lost, frames);
-  report.headline_number = first["error_px"].is_null() ? std::to_string(lost) : number(first["error_px"]["mean"], 3);
-  report.headline_unit = first["error_px"].is_null() ? "lost frames" : "px mean corner error";
-  ReportTable table{
-      "Trackers", {"tracker", "lost", "wrong OK", "uncertain", "error px", "std", "max", "ms p50", "ms p99"}, {}, ""};
-  for (std::size_t i = 0; i < lanes.size(); ++i) {
-    const auto& lane = summary["trackers"][i];
-    const auto error = [&](const char* key) {
-      return lane["error_px"].is_null() ? "-" : number(lane["error_px"][key], 3);
-    };
-    table.rows.push_back({lanes[i].name(), std::to_string(lane["lost_frames"].get<int>()),
-                          number(lane["wrong_ok_frames"], 0), std::to_string(lane["uncertain_frames"].get<int>()),
-                          error("mean"), error("std"), error("max"), number(lane["ms"]["p50"], 3),
-                          number(lane["ms"]["p99"], 3)});
-    report.plots.push_back({"Displacement, " + lanes[i].name(),
-                            "px",
-                            {{"horizontal", "displacement/u_px"}, {"vertical", "displacement/v_px"}},
-                            1,
-                            "",
-                            &lanes[i].table()});
-    report.plots.push_back(
-        {"Quality, " + lanes[i].name(), "", {{"quality", "track/quality"}}, 1, "", &lanes[i].table()});
+std::vector<std::string> chosen_trackers(const TrackOptions& o, const sim::Scene& scene) {
+  auto names = o.trackers.empty() ? std::vector<std::string>{scene.engines.tracker} : o.trackers;
+  if (names == std::vector<std::string>{"all"}) names = tracking::trackers().names();
+  for (const auto& name : names) {
+    tracking::trackers().require(name);
+    if (std::count(names.begin(), names.end(), name) > 1)
+      throw ConfigError(fmt::format("--tracker: '{}' is given twice; keep one", name));
   }
-  report.tables = {table};
-  report.pictures = std::move(pictures);
-  report.table = &lanes.front().table();
-  report.state_column = "track/state";
-  report.config_yaml = config;
-  report.summary = summary;
-  return report;
+  return names;
+}
+
+// The region and its centre; the point to score comes with the truth.
+TrackStart start_of(const TrackOptions& o, const sim::HandPicked& picked, const tracking::Frame& frame,
+                    const tracking::Camera& lens) {
+  TrackStart start{region_for(o, picked), {}};
+  if (picked.target_edge_ratio > 0)
+    start.region = tracking::refine_square(frame.grey, lens, start.region, picked.target_edge_ratio).corners;
+  if (!tracking::is_convex(start.region))
+    throw ConfigError(o.run.source + ": the region's corners are not four points clockwise from top left");
+  start.centre = region_centre(start.region, lens);
+  return start;
+}
+
+// `truth` may be null; else it must outlive the result.
+TruthSource source_of_truth(const TrackOptions& o, const Tracked& tracked, const CornerTruth* truth,
+                            const tracking::Quad& region) {
+  TruthSource source = truth ? truth_of(*truth, o.truth) : truth_of(*tracked.table);
+  if (!tracked.points.empty())
+    add_point(source, tracked.points, sim::PointTracks::read(tracked.points).choose(tracked.point, region));
+  return source;
+}
+
+std::vector<TrackLane> started_lanes(const TrackOptions& o, const Tracked& tracked, const tracking::Camera& lens,
+                                     const TruthKind& truth, const tracking::Frame& frame, const TrackStart& start) {
+  std::vector<TrackLane> lanes;
+  for (const auto& name : chosen_trackers(o, tracked.scene)) {
+    lanes.emplace_back(name, tracking::trackers().make(name, lens, tracked.scene.tracking),
+                       estimator_for(o, *tracked.table), truth,
+                       rows_ahead(tracked.table->frames().frame_count().value_or(0)));
+    if (const std::string why = lanes.back().start(frame, start); !why.empty())
+      throw ConfigError(fmt::format("{}: the region cannot be tracked by {}: {}", o.run.source, name, why));
+  }
+  return lanes;
+}
+
+std::vector<PaperTable> paper_tables(const Tracked& tracked, const nlohmann::json& trackers) {
+  if (!tracked.sequence) return {};
+  if (tracked.sequence->sequence == "table5")
+    return {paper_table_5(trackers, tracked.sequence->noise_grey, tracked.sequence->speculars)};
+  if (tracked.sequence->sequence == "circle") return {paper_figure_7(trackers, tracked.sequence->speculars)};
+  return {};
+}
+
+void write_tables(const RunFolder& folder, const std::vector<TrackLane>& lanes) {
+  for (const auto& lane : lanes) {
+    if (lanes.size() > 1) lane.table().write_csv(folder.file("frames_" + lane.name() + ".csv"));
+    if (lane.table().has("pose/qw")) write_tum(lane.table(), folder.file("trajectory_" + lane.name() + ".tum"));
+  }
+  lanes.front().table().write_csv(folder.file("frames.csv"));
 }
 
 int run_track(TrackOptions o) {
@@ -149,72 +189,58 @@ int run_track(TrackOptions o) {
   if (o.artificial) o.run.source = artificial_source(o.artificial, o.run);
   std::optional<CornerTruth> truth_file;
   if (!o.truth.empty()) truth_file.emplace(o.truth);
-  const auto [scene, table, config] = opened(o, truth_file ? &*truth_file : nullptr);
-  std::vector<std::string> names = o.trackers.empty() ? std::vector<std::string>{scene.engines.tracker} : o.trackers;
-  if (names == std::vector<std::string>{"all"}) names = tracking::trackers().names();
-  for (const auto& name : names) {
-    tracking::trackers().require(name);
-    if (std::count(names.begin(), names.end(), name) > 1)
-      throw ConfigError(fmt::format("--tracker: '{}' is given twice; keep one", name));
-  }
-  const std::size_t expected = table->frames().frame_count().value_or(0);
-
+  const CornerTruth* truth = truth_file ? &*truth_file : nullptr;
+  const Tracked tracked = opened(o, truth);
+  (void)chosen_trackers(o, tracked.scene);  // throws before anything is read
+  tracking::FrameSource& frames = tracked.table->frames();
   // Without a calibration the homography stays on the pixels: a guessed lens would only add its own error.
-  const bool calibrated = !o.artificial && (!scene.is_recorded() || !scene.camera.calibration.empty());
-  const tracking::Camera lens = calibrated ? table->camera() : tracking::Camera{};
-  std::vector<TrackLane> lanes;
-  for (const auto& name : names)
-    lanes.emplace_back(name, tracking::trackers().make(name, lens, scene.tracking), estimator_for(o, *table),
-                       rows_ahead(expected));
+  const bool calibrated = !o.artificial && (!tracked.scene.is_recorded() || !tracked.scene.camera.calibration.empty());
+  const tracking::Camera lens = calibrated ? tracked.table->camera() : tracking::Camera{};
   tracking::Frame frame;
-  if (!table->frames().next(frame)) throw InputError(o.run.source + ": there is no frame");
-  const auto picked = table->picked();
-  tracking::Quad region = region_for(o, picked);
-  if (picked.target_edge_ratio > 0)
-    region = tracking::refine_square(frame.grey, lens, region, picked.target_edge_ratio).corners;
-  for (auto& lane : lanes)
-    if (const std::string why = lane.start(frame, region); !why.empty())
-      throw ConfigError(fmt::format("{}: the region cannot be tracked by {}: {}", o.run.source, lane.name(), why));
+  if (!frames.next(frame)) throw InputError(o.run.source + ": there is no frame");
+  TrackStart start = start_of(o, tracked.table->picked(), frame, lens);
+  const TruthSource source = source_of_truth(o, tracked, truth, start.region);
+  if (source.kind.point) start.point = source.at(frame).point;
+  if (!start.point.allFinite()) start.point = start.centre;
+  std::vector<TrackLane> lanes = started_lanes(o, tracked, lens, source.kind, frame, start);
 
   RunFolder folder(run_path(o.run, "track"));
-  std::vector<ReportPicture> pictures;
+  const std::size_t expected = frames.frame_count().value_or(0);
+  TrackAlbum album(expected, source.kind, frame);
   std::size_t count = 0, with_truth = 0;
   bool interrupted = false;
   {
     const Interrupt interrupt;
     Progress progress("track " + stem_of(o.run.source), expected, o.run.quiet);
     do {
-      servo::LoopRecord record;
-      record.frame = frame;
-      const auto truth = truth_file ? truth_file->at(frame.time_s) : table->truth(record).corners_px;
-      with_truth += truth.has_value();
-      cv::Mat canvas;
-      const bool show = frame.status == tracking::FrameStatus::OK && (count == 0 || count == expected / 2);
-      if (show) canvas = canvas_of(frame);
-      for (auto& lane : lanes) {
-        const tracking::Track& track = lane.follow(frame, truth ? &*truth : nullptr, now_s);
-        if (show) draw_region(canvas, track);
-      }
-      if (show) pictures.push_back({fmt::format("{:.2f} s", frame.time_s), canvas});
+      const TrackTruth known = source.at(frame);
+      with_truth += known.corners.has_value() || known.point.allFinite();
+      for (auto& lane : lanes) lane.follow(frame, known, now_s);
+      album.look_at(frame, lanes, known);
       progress.update(++count);
-    } while (!(interrupted = interrupt.requested()) && table->frames().next(frame));
+    } while (!(interrupted = interrupt.requested()) && frames.next(frame));
   }
 
-  nlohmann::json summary{{"command", "track"},
-                         {"version", HEARTSERVO_VERSION},
-                         {"source", o.run.source},
-                         {"frames", count},
-                         {"interrupted", interrupted}};
-  for (const auto& lane : lanes) {
-    summary["trackers"].push_back(lane.summary());
-    lane.table().write_csv(folder.file(lanes.size() == 1 ? "frames.csv" : "frames_" + lane.name() + ".csv"));
-    if (lane.table().has("pose/qw")) write_tum(lane.table(), folder.file("trajectory_" + lane.name() + ".tum"));
+  nlohmann::json summary{{"command", "track"}, {"version", HEARTSERVO_VERSION}, {"source", o.run.source},
+                         {"frames", count},    {"interrupted", interrupted},    {"reference", nullptr},
+                         {"point", nullptr}};
+  if (!source.reference.empty()) summary["reference"] = source.reference;
+  if (source.kind.point) summary["point"] = *source.kind.point;
+  for (const auto& lane : lanes) summary["trackers"].push_back(lane.summary());
+  std::string text =
+      fmt::format("{}: {} frames\n\n{}", o.run.source, count, terminal_text(tracker_table(summary), false));
+  std::vector<ReportTable> paper;
+  for (const auto& compared : paper_tables(tracked, summary["trackers"])) {
+    paper.push_back(compared.table);
+    summary["paper"].push_back(compared.summary);
+    text += fmt::format("\n{}\n\n{}", compared.table.title, terminal_text(compared.table, true));
   }
-  if (lanes.size() > 1) lanes.front().table().write_csv(folder.file("frames.csv"));
-  finish_run(folder, track_report(summary, lanes, pictures, config), o.run, track_table(summary));
-  if (truth_file && with_truth == 0)
+  write_tables(folder, lanes);
+  const TimeTable plotted = side_by_side(lanes);
+  finish_run(folder, track_report(summary, plotted, paper, album.pictures(lanes), tracked.config), o.run, text);
+  if (!source.reference.empty() && with_truth == 0)
     fmt::print(stderr, "heartservo: {}: no row has the time of a frame, so no error is known; check --frame-rate-hz\n",
-               o.truth);
+               source.reference);
   return interrupted ? INTERRUPTED : DONE;
 }
 
@@ -235,11 +261,17 @@ Command add_track_command(CLI::App& program) {
   app->add_option("--square-mm", o.square_mm, "side of the square landmark: metric pose, with --camera")
       ->check(finite(0.1, 1000));
   app->add_option("--truth", o.truth, "CSV of the true corners, as 'heartservo render' writes it")->type_name("FILE");
+  app->add_option("--points", o.points,
+                  "CSV of annotated points (frame or time_s, point, u_px, v_px, visible), to score")
+      ->type_name("FILE");
+  app->add_option("--point", o.point, "which of them; default: the one inside the region nearest to its centre")
+      ->type_name("NAME");
   app->add_flag("--list", o.run.list, "list the trackers and exit");
   app->footer(
       "Examples:\n  heartservo track frames/ --roi 150,130,60,60\n"
       "  heartservo track scenes/pig_2007.yaml --tracker all --frames 250\n"
       "  heartservo track --artificial b --texture retina --side 40 --tracker all\n"
+      "  heartservo track frames/ --roi 212,130,50,50 --points POINTS.csv --tracker all\n"
       "  heartservo track rendered/frames --truth rendered/truth.csv --corners 232,223,286,224,285,278,231,277");
   return {app, [options] { return run_track(*options); }};
 }

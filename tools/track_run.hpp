@@ -5,46 +5,63 @@
 #include <vector>
 
 #include "tools/time_table.hpp"
+#include "tools/track_score.hpp"
 #include "tracking/landmark/target_estimator.hpp"
 #include "tracking/planar/target_tracker.hpp"
 
 namespace heartservo::tools {
 
+/// Where tracking begins. px, in the first frame.
+struct TrackStart {
+  tracking::Quad region;
+  Eigen::Vector2d centre;                                  ///< of the region as the camera sees it (region_centre())
+  Eigen::Vector2d point = Eigen::Vector2d::Constant(NAN);  ///< the point to score, if there is one
+};
+
 /// One tracker's way through a sequence.
 class TrackLane {
  public:
-  /// `estimator` may be null: no metric pose.
+  /// `estimator` may be null: no metric pose. `truth`: what follow() will be given.
   TrackLane(std::string name, std::unique_ptr<tracking::TargetTracker> tracker,
-            std::unique_ptr<tracking::TargetEstimator> estimator, std::size_t frames);
+            std::unique_ptr<tracking::TargetEstimator> estimator, const TruthKind& truth, std::size_t frames);
 
   const std::string& name() const { return name_; }
 
   /// "" or the reason for which the tracker refuses the region.
-  std::string start(const tracking::Frame& frame, const tracking::Quad& region);
+  std::string start(const tracking::Frame& frame, const TrackStart& start);
 
-  /// Follows one frame; `truth` is where the corners truly are, or null. The result stays until the next call.
-  const tracking::Track& follow(const tracking::Frame& frame, const tracking::Quad* truth, double (*now_s)());
+  /// Follows one frame. The result stays until the next call.
+  const tracking::Track& follow(const tracking::Frame& frame, const TrackTruth& truth, double (*now_s)());
+  const tracking::Track& track() const { return track_; }
+  const TrackScore::Errors& errors() const { return errors_; }
+  const TrackStart& began() const { return start_; }
 
-  /// This tracker's entry of summary.json. `wrong_ok_frames` were called OK though the true corners are over 5 px off;
-  /// `score_lost_frames` are those LOST and all over 5 px off; both null without truth.
+  /// See TargetTracker: call it before the frame's pixels go away.
+  void mark_left_out(cv::Mat& mask) { tracker_->mark_left_out(mask); }
+
+  /// This tracker's entry of summary.json: its name, the score, and
+  ///   ms               {p50, p99, max} of one frame
+  ///   displacement_px  {x, y} of the region's centre since the first frame: {min, max, peak_to_peak, rms}
   nlohmann::json summary() const;
 
+  /// Its CSV: time_s, frame/sequence, track/state, track/quality, track/corner0..3, target (the centre of the region),
+  /// displacement (of the target since the first frame), error_px (of the corners), timing/track_ms; with the truth
+  /// that there is: truth/corner0..3; point, truth/point, point/error_px; and when metric: measured, pose. A LOST frame
+  /// has no place.
   const TimeTable& table() const { return table_; }
 
  private:
   std::string name_;
   std::unique_ptr<tracking::TargetTracker> tracker_;
   std::unique_ptr<tracking::TargetEstimator> estimator_;
+  TruthKind truth_;
   TimeTable table_;
+  TrackScore score_;
+  TrackStart start_;
   tracking::Track track_;
-  std::size_t lost_ = 0, uncertain_ = 0, relocks_ = 0;
-  std::size_t wrong_ok_ = 0, score_lost_ = 0;  // against truth: over 5 px off and called OK; LOST or over 5 px off
-  bool scored_ = false;
-  std::vector<double> errors_px_, ms_, u_px_, v_px_;
-  Eigen::Vector2d start_px_ = Eigen::Vector2d::Zero();
+  TrackScore::Errors errors_;
+  Eigen::Vector2d point_ = Eigen::Vector2d::Constant(NAN);
+  std::vector<double> row_, ms_, u_px_, v_px_;
 };
-
-/// The side-by-side table for the terminal.
-std::string track_table(const nlohmann::json& summary);
 
 }  // namespace heartservo::tools

@@ -61,6 +61,8 @@ std::vector<std::string> Scene::validate() const {
     problems.emplace_back("recording.roi must be x, y, width, height");
   else if (recording.roi.size() == 4 && !(recording.roi[2] > 0 && recording.roi[3] > 0))
     problems.emplace_back("recording.roi needs a width and a height above 0");
+  if (!recording.point.empty() && recording.reference.empty())
+    problems.emplace_back("recording.point names a point of recording.reference, which is not given");
   if (tracking.uncertain_quality > tracking.ok_quality)
     problems.emplace_back("tracking.uncertain_quality is above tracking.ok_quality");
   if (!(loop.latency.total_s() < 2)) problems.emplace_back("loop.latency adds up to 2 s or more");

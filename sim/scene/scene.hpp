@@ -34,7 +34,7 @@ struct RecordingOptions {
   std::string source;
   double depth_m = 0.045;
   std::vector<double> roi;
-  std::string reference;
+  std::string reference, point;
 
   void fields(FieldVisitor& v) {
     v.field({"source", "", "image folder, printf pattern or video, relative to the scene; empty: the simulated heart"},
@@ -42,9 +42,12 @@ struct RecordingOptions {
     v.field({"depth_m", "m", "assumed distance of the region from the camera", 1e-3, 10}, depth_m);
     v.field({"roi", "px", "region to follow in the first frame: x, y, width, height", -1e5, 1e5}, roi, 0);
     v.field({"reference", "",
-             "CSV with time_s, u_px, v_px: where the region's centre truly is, for the score; empty: "
-             "scored against the tracked region"},
+             "CSV with frame (from 1) or time_s, u_px, v_px, optionally point and visible: where points of the region "
+             "truly "
+             "are, or without names its centre, for the score; empty: scored against the tracked region"},
             reference);
+    v.field({"point", "", "the point of recording.reference; empty: the one inside the region nearest to its centre"},
+            point);
   }
 };
 

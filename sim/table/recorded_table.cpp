@@ -9,7 +9,7 @@
 #include "sim/endoscope/tool_view.hpp"
 #include "sim/robot/cartesian_robot.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/table/reference_track.hpp"
+#include "sim/table/point_tracks.hpp"
 #include "sim/table/table.hpp"
 #include "tracking/frames/open_source.hpp"
 #include "tracking/settings/errors.hpp"
@@ -33,9 +33,8 @@ class RecordedTable final : public Table, private tracking::FrameSource {
         view_(camera_, tool_),
         robot_(scene.robot, target_start() + offset_ + scene.robot.start_error_m,
                static_cast<std::uint64_t>(scene.seed)) {
-    if (!scene.recording.reference.empty())
-      reference_ = ReferenceTrack::read(resolve(scene, scene.recording.reference));
     offset_px_ = camera_.project(target_start() + offset_) - camera_.project(target_start());
+    if (!scene.recording.reference.empty()) find_reference(resolve(scene, scene.recording.reference));
   }
 
   tracking::FrameSource& frames() override { return *this; }
@@ -45,7 +44,8 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   Eigen::Vector3d offset() const override { return offset_; }
   double region_side_m() const override { return 0; }
   double marker_side_m() const override { return tool_.marker_side_m; }
-  std::string reference() const override { return reference_ ? reference_->file() : "tracked"; }
+  std::string reference() const override { return reference_ ? reference_->file : "tracked"; }
+  std::string reference_point() const override { return reference_ ? reference_->point.name : ""; }
 
   HandPicked picked() const override {
     const auto corners = marker_corners(tool_, start_tip_);
@@ -60,13 +60,19 @@ class RecordedTable final : public Table, private tracking::FrameSource {
     servo::TruthSample truth;
     truth.tip_px = camera_.project(tip_);
     if (reference_)
-      truth.goal_px = reference_->at(record.frame.time_s) + offset_px_;
+      truth.goal_px = reference_->point.at(record.frame.sequence, record.frame.time_s) + reference_->goal_from_point_px;
     else if (record.goal_now.allFinite())
       truth.goal_px = camera_.project(record.goal_now);
     return truth;
   }
 
  private:
+  struct Reference {
+    std::string file;
+    PointTrack point;
+    Eigen::Vector2d goal_from_point_px;
+  };
+
   bool next(tracking::Frame& frame) override {
     if (count_ >= limit_ || !source_->next(frame)) return false;
     if (count_ == 0 && frame.status != tracking::FrameStatus::OK)
@@ -87,6 +93,14 @@ class RecordedTable final : public Table, private tracking::FrameSource {
     return count ? std::min(*count, limit_) : count;
   }
   std::string description() const override { return source_->description(); }
+
+  // Against a named point the goal is carried as by a hand that holds on to the point: it keeps its distance in pixels.
+  void find_reference(const std::string& file) {
+    const PointTracks tracks = PointTracks::read(file);
+    reference_ = Reference{file, tracks.choose(scene_.recording.point, region_), offset_px_};
+    if (!reference_->point.name.empty())
+      reference_->goal_from_point_px += tracking::centre(region_) - reference_->point.at(0, 0);
+  }
 
   tracking::Quad picked_region() const {
     const auto& roi = scene_.recording.roi;
@@ -126,7 +140,7 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   ToolOptions tool_;
   ToolView view_;
   CartesianRobot robot_;
-  std::optional<ReferenceTrack> reference_;
+  std::optional<Reference> reference_;
   Eigen::Vector2d offset_px_;
   Eigen::Vector3d tip_ = robot_.true_tip_camera();
   Eigen::Vector3d start_tip_ = tip_;

@@ -40,6 +40,7 @@ class Table {
   /// For the score. Call it after the loop's step, with what that step recorded.
   virtual servo::TruthSample truth(const servo::LoopRecord& record) const = 0;
   virtual std::string reference() const = 0;  ///< what the pixel residual is scored against: truth, tracked or a file
+  virtual std::string reference_point() const { return ""; }  ///< the point of that file; "" where it names none
 };
 
 /// The simulated heart, or the recorded sequence that the scene names. Throws InputError, ConfigError.

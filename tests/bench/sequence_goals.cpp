@@ -3,6 +3,7 @@
 //
 //   kept    runs not lost; lost: LOST or over 5 px off in the last frame
 //   px      mean corner error over the frames of the kept runs that are not LOST; max: the largest
+//   target  mean error of the region's centre (Track::target)
 //   floor   what no unbiased estimate can go below at the sequence's noise, on the first frame without blobs
 //   lost    LOST frames of all runs
 //   wrong   frames called OK that are over 5 px off, of all runs
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -40,12 +42,12 @@ struct Cell {
   int runs = 0, kept = 0;
   std::size_t lost_frames = 0, wrong_ok = 0;
   double floor_px = 0;
-  std::vector<double> errors_px, ms;
+  std::vector<double> errors_px, target_px, ms;
   double max_px = 0;
 };
 
 struct Run {
-  std::vector<double> errors_px, ms;
+  std::vector<double> errors_px, target_px, ms;
   std::size_t lost_frames = 0, wrong_ok = 0;
   bool kept = false;
   double max_px = 0;
@@ -80,6 +82,9 @@ Run run(const std::string& tracker_name, const std::vector<tracking::Frame>& fra
     result.wrong_ok += track.state == tracking::TrackState::OK && !(error <= kLost_px);
     if (!lost) {
       result.errors_px.push_back(error);
+      const Eigen::Vector2d target =
+          (truth.H_current_reference(k) * tracking::centre(truth.region()).homogeneous()).hnormalized();
+      result.target_px.push_back((track.target - target).norm());
       result.max_px = std::max(result.max_px, error);
     }
     result.kept = !lost && error <= kLost_px;
@@ -125,13 +130,14 @@ void run_place(const Choice& o, sim::SequenceOptions options, const std::shared_
       ++cell.kept;
       cell.max_px = std::max(cell.max_px, r.max_px);
       cell.errors_px.insert(cell.errors_px.end(), r.errors_px.begin(), r.errors_px.end());
+      cell.target_px.insert(cell.target_px.end(), r.target_px.begin(), r.target_px.end());
     }
   }
 }
 
 void sweep(const Choice& o) {
-  fmt::print("{:<14}{:<8}{:>5}{:>8}{:>9}{:>9}{:>9}{:>7}{:>7}{:>9}{:>9}\n", "tracker", "seq", "side", "kept", "px",
-             "floor", "max", "lost", "wrong", "ms p50", "ms p99");
+  fmt::print("{:<14}{:<8}{:>5}{:>8}{:>9}{:>9}{:>9}{:>9}{:>7}{:>7}{:>9}{:>9}\n", "tracker", "seq", "side", "kept", "px",
+             "floor", "max", "target", "lost", "wrong", "ms p50", "ms p99");
   std::map<std::pair<std::string, int>, std::shared_ptr<const sim::BasePicture>> bases;
   for (const auto& name : o.sequences) {
     std::map<std::pair<std::string, int>, Cell> cells;
@@ -151,9 +157,10 @@ void sweep(const Choice& o) {
       for (const int side : o.sides) {
         const Cell& c = cells[{tracker, side}];
         const std::string error = c.kept ? fmt::format("{:.4f}", servo::spread_of(c.errors_px).mean) : "-";
-        fmt::print("{:<14}{:<8}{:>5}{:>8}{:>9}{:>9.4f}{:>9.3f}{:>7}{:>7}{:>9.3f}{:>9.3f}\n", tracker, name, side,
-                   fmt::format("{}/{}", c.kept, c.runs), error, c.floor_px / c.runs, c.max_px, c.lost_frames,
-                   c.wrong_ok, servo::percentile(c.ms, 50), servo::percentile(c.ms, 99));
+        fmt::print("{:<14}{:<8}{:>5}{:>8}{:>9}{:>9.4f}{:>9.3f}{:>9.4f}{:>7}{:>7}{:>9.3f}{:>9.3f}\n", tracker, name,
+                   side, fmt::format("{}/{}", c.kept, c.runs), error, c.floor_px / c.runs, c.max_px,
+                   servo::spread_of(c.target_px).mean, c.lost_frames, c.wrong_ok, servo::percentile(c.ms, 50),
+                   servo::percentile(c.ms, 99));
       }
     std::fflush(stdout);
   }

@@ -48,7 +48,7 @@ class ReportTest : public testing::Test {
 
   const TimeTable table_ = test::synthetic_table(1500);
   const Report report_ = test::synthetic_report(table_);
-  const std::string html_ = report_html(report_);
+  std::string html_ = report_html(report_);
 };
 
 TEST_F(ReportTest, AnswersFirst) {
@@ -85,7 +85,7 @@ TEST_F(ReportTest, CarriesEveryRow) {
   EXPECT_FALSE(columns.contains("tip/z_m")) << "only what is drawn";
   EXPECT_EQ(data["plots"].size(), 5u);
   EXPECT_EQ(data["plots"][0]["scale"], 1000);
-  EXPECT_EQ(data["state"]["column"], "tracking/state");
+  EXPECT_EQ(data["states"][0]["column"], "tracking/state");
 }
 
 TEST_F(ReportTest, EscapesWhatComesFromOutside) {
@@ -120,8 +120,38 @@ TEST_F(ReportTest, IsWellFormed) {
   }
   EXPECT_TRUE(open.empty());
   EXPECT_EQ(page.find("{{"), std::string::npos) << "a place of the template that was not filled";
-  for (const char* id : {"plot0", "plot4", "legend0", "strip", "shares", "data", "hint"})
+  for (const char* id : {"plot0", "plot4", "legend0", "strip0", "shares0", "data", "hint"})
     EXPECT_EQ(count("id=\"" + std::string(id) + "\""), 1u) << id;
+}
+
+TEST_F(ReportTest, HasAStripForEveryTrackerAndTruthBelowLogarithmicErrors) {
+  Report several = report_;
+  several.states = {{"esm", "tracking/state"}, {"<ssd>", "tracking/state"}};
+  several.plots[3].log_from = 0.001;
+  several.plots[3].series.insert(several.plots[3].series.begin(), {"truth", "residual/norm_m", true});
+  html_ = report_html(several);
+  const auto data = json_of("data");
+  ASSERT_EQ(data["states"].size(), 2u);
+  EXPECT_EQ(data["states"][1]["label"], "<ssd>");
+  EXPECT_EQ(data["plots"][3]["log_from"], 0.001);
+  EXPECT_EQ(data["plots"][0]["log_from"], 0);
+  EXPECT_EQ(data["plots"][3]["series"][0]["truth"], true);
+  EXPECT_EQ(data["plots"][3]["series"][1]["truth"], false);
+  for (const char* id : {"strip0", "strip1", "shares0", "shares1"})
+    EXPECT_EQ(count("id=\"" + std::string(id) + "\""), 1u);
+  EXPECT_TRUE(has("aria-label=\"State of &lt;ssd&gt; over time\""));
+}
+
+TEST_F(ReportTest, SaysWhatTheColoursOfAPictureMean) {
+  EXPECT_FALSE(has("<i style=\"color")) << "no keys, no legend";
+  Report keyed = report_;
+  keyed.pictures[0].keys = {{"region", {233, 180, 86}, PictureKey::Mark::LINE},
+                            {"lost", {0, 94, 213}, PictureKey::Mark::DASHES},
+                            {"<glare>", {66, 228, 240}, PictureKey::Mark::AREA}};
+  const std::string html = report_html(keyed);
+  EXPECT_NE(html.find("<i style=\"color:#56b4e9\"></i>region"), std::string::npos) << "BGR in, RGB out";
+  EXPECT_NE(html.find("<i class=\"dashes\" style=\"color:#d55e00\"></i>lost"), std::string::npos);
+  EXPECT_NE(html.find("<i class=\"area\" style=\"color:#f0e442\"></i>&lt;glare&gt;"), std::string::npos);
 }
 
 TEST_F(ReportTest, AlignsColumnsOfNumbers) {

@@ -60,7 +60,7 @@ inline tools::Report synthetic_report(const tools::TimeTable& table) {
   report.headline_unit = "mm RMS residual";
   report.notices = {"Ended by Ctrl-C after 25 s of 60 s; all numbers are of these 25 s."};
   report.table = &table;
-  report.state_column = "tracking/state";
+  report.states = {{"tracking", "tracking/state"}};
   report.plots = {
       {"Residual against motion", "mm", {{"heart z", "heart/z_m"}, {"residual", "residual/norm_m"}}, 1000, "", nullptr},
       {"Heart motion", "mm", {{"x", "heart/x_m"}, {"y", "heart/y_m"}, {"z", "heart/z_m"}}, 1000, "", nullptr},

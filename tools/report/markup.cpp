@@ -73,6 +73,19 @@ std::string without_source_map(std::string_view text) {
   return std::string(text.substr(0, at - 2));  // with the // or /* before it; nothing follows but its end
 }
 
+namespace {
+
+std::string key(const PictureKey& key) {
+  const auto byte = [&](int channel) { return cv::saturate_cast<std::uint8_t>(key.bgr[channel]); };
+  const char* mark = key.mark == PictureKey::Mark::AREA     ? " class=\"area\""
+                     : key.mark == PictureKey::Mark::DASHES ? " class=\"dashes\""
+                                                            : "";
+  return fmt::format("<span class=\"key\"><i{} style=\"color:#{:02x}{:02x}{:02x}\"></i>{}</span>", mark, byte(2),
+                     byte(1), byte(0), escaped(key.label));
+}
+
+}  // namespace
+
 std::string image(const ReportPicture& picture) {
   if (picture.bgr.empty() || picture.bgr.depth() != CV_8U)
     throw std::invalid_argument(fmt::format("report: the picture '{}' is empty or not 8 bit", picture.caption));
@@ -83,10 +96,13 @@ std::string image(const ReportPicture& picture) {
   }
   std::vector<unsigned char> png;
   cv::imencode(".png", shown, png, {cv::IMWRITE_PNG_COMPRESSION, 6});
+  std::string keys;
+  for (const auto& k : picture.keys) keys += key(k);
+  if (!keys.empty()) keys = "<span class=\"legend\">" + keys + "</span>";
   return fmt::format(
       "<figure class=\"picture\"><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
-      "<figcaption>{}</figcaption></figure>\n",
-      shown.cols, shown.rows, escaped(picture.caption), base64(png), escaped(picture.caption));
+      "<figcaption>{}{}</figcaption></figure>\n",
+      shown.cols, shown.rows, escaped(picture.caption), base64(png), escaped(picture.caption), keys);
 }
 
 std::string table(const ReportTable& table) {

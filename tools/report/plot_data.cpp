@@ -39,7 +39,7 @@ struct Used {
   std::map<const TimeTable*, std::set<std::string>> columns;
 
   std::size_t add(const TimeTable* table, const std::string& column) {
-    if (table == nullptr) throw std::invalid_argument("report: a plot or the state strip has no table");
+    if (table == nullptr) throw std::invalid_argument("report: a plot or a state strip has no table");
     (void)table->column(column);  // throws for an unknown one
     columns[table].insert(column);
     const auto found = std::find(tables.begin(), tables.end(), table);
@@ -60,15 +60,20 @@ std::string plot_data(const Report& report) {
     std::size_t index = used.add(table, "time_s");
     for (const auto& s : plot.series) {
       index = used.add(table, s.column);
-      series.push_back({{"label", s.label}, {"column", s.column}});
+      series.push_back({{"label", s.label}, {"column", s.column}, {"truth", s.is_truth}});
     }
-    plots.push_back(
-        {{"title", plot.title}, {"unit", plot.y_label}, {"scale", plot.scale}, {"table", index}, {"series", series}});
+    plots.push_back({{"title", plot.title},
+                     {"unit", plot.y_label},
+                     {"scale", plot.scale},
+                     {"log_from", plot.log_from},
+                     {"table", index},
+                     {"series", series}});
   }
-  nlohmann::json state;
-  if (!report.state_column.empty()) {
+  nlohmann::json states = nlohmann::json::array();
+  for (const auto& state : report.states) {
     used.add(report.table, "time_s");
-    state = {{"table", used.add(report.table, report.state_column)}, {"column", report.state_column}};
+    states.push_back(
+        {{"table", used.add(report.table, state.column)}, {"column", state.column}, {"label", state.label}});
   }
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
@@ -86,7 +91,7 @@ std::string plot_data(const Report& report) {
   const auto dumped = [](const nlohmann::json& json) {
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   };
-  fmt::format_to(out, "],\n\"plots\":{},\n\"state\":{}}}", dumped(plots), dumped(state));
+  fmt::format_to(out, "],\n\"plots\":{},\n\"states\":{}}}", dumped(plots), dumped(states));
   return fmt::to_string(text);
 }
 

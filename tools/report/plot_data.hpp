@@ -6,9 +6,9 @@
 
 namespace heartservo::tools {
 
-/// {"tables":[{"time_s":[...],...}],"plots":[...],"state":{"table":0,"column":"..."}|null}: every row, of the columns
-/// that are drawn; 6 significant digits (9 for time), null for "no value". Throws std::invalid_argument for a column
-/// that its table lacks, or a plot without a table.
+/// {"tables":[{"time_s":[...],...}],"plots":[...],"states":[{"table":0,"column":"...","label":"..."},...]}: every row,
+/// of the columns that are drawn; 6 significant digits (9 for time), null for "no value". Throws std::invalid_argument
+/// for a column that its table lacks, or a plot without a table.
 std::string plot_data(const Report& report);
 
 }  // namespace heartservo::tools

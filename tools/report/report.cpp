@@ -17,7 +17,15 @@ namespace {
 
 using markup::escaped;
 
-std::string plot_figure(const ReportPlot& plot, std::size_t index, bool strip) {
+std::string state_strip(const ReportSeries& state, std::size_t index) {
+  return fmt::format(
+      "<div class=\"strip\"><div class=\"legend\"><span class=\"quiet\">{0}</span><span class=\"legend\" "
+      "id=\"shares{1}\"></span></div>\n<canvas id=\"strip{1}\" role=\"img\" aria-label=\"State of {0} over "
+      "time\"></canvas></div>\n",
+      escaped(state.label), index);
+}
+
+std::string plot_figure(const ReportPlot& plot, std::size_t index, const std::vector<ReportSeries>& states) {
   std::string html =
       fmt::format("<figure>\n<div class=\"plot-head\"><h2>{}</h2><div class=\"legend\" id=\"legend{}\"></div></div>\n",
                   escaped(plot.title), index);
@@ -28,17 +36,13 @@ std::string plot_figure(const ReportPlot& plot, std::size_t index, bool strip) {
       "class=\"plot\" id=\"plot{}\" role=\"img\" tabindex=\"0\" aria-label=\"{}\" "
       "aria-describedby=\"hint\"></div>\n",
       escaped(plot.y_label), index, escaped(plot.title));
-  if (strip)
-    html +=
-        "<div class=\"strip\"><canvas id=\"strip\" role=\"img\" aria-label=\"Tracking state over time\"></canvas>"
-        "<div class=\"legend\"><span class=\"quiet\">Tracking</span><span id=\"shares\" class=\"legend\"></span></div>"
-        "</div>\n";
+  for (std::size_t i = 0; i < states.size(); ++i) html += state_strip(states[i], i);
   return html + "</figure>\n";
 }
 
 std::string first_plot(const Report& report) {
   if (report.plots.empty()) return "";
-  return plot_figure(report.plots[0], 0, !report.state_column.empty());
+  return plot_figure(report.plots[0], 0, report.states);
 }
 
 std::string section(const char* label, const char* kind, const std::string& content) {
@@ -48,7 +52,7 @@ std::string section(const char* label, const char* kind, const std::string& cont
 
 std::string other_plots(const Report& report) {
   std::string html;
-  for (std::size_t i = 1; i < report.plots.size(); ++i) html += plot_figure(report.plots[i], i, false);
+  for (std::size_t i = 1; i < report.plots.size(); ++i) html += plot_figure(report.plots[i], i, {});
   const std::string hint =
       report.plots.empty()
           ? ""

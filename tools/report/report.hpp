@@ -12,14 +12,24 @@
 
 namespace heartservo::tools {
 
+/// What a colour of a picture means.
+struct PictureKey {
+  enum class Mark { LINE, DASHES, AREA };
+  std::string label;
+  cv::Scalar bgr;  ///< 0 to 255
+  Mark mark = Mark::LINE;
+};
+
 struct ReportPicture {
   std::string caption;
-  cv::Mat bgr;  ///< 8 bit, 3 channels or grey; wider than 1280 px it is reduced to that
+  cv::Mat bgr;                        ///< 8 bit, 3 channels or grey; wider than 1280 px it is reduced to that
+  std::vector<PictureKey> keys = {};  ///< shown as a legend below
 };
 
 struct ReportSeries {
-  std::string label;   ///< "heart z"
-  std::string column;  ///< of the table
+  std::string label;      ///< "heart z"
+  std::string column;     ///< of the table
+  bool is_truth = false;  ///< what the others should be: drawn broad and pale below them
 };
 
 /// Columns over time. All plots zoom and point together.
@@ -30,6 +40,7 @@ struct ReportPlot {
   double scale = 1;                  ///< from the table's unit to the plot's (m to mm: 1000)
   std::string note = "";             ///< one line below the title, "" for none
   const TimeTable* table = nullptr;  ///< nullptr: the report's
+  double log_from = 0;               ///< above 0: a logarithmic axis, on which smaller values lie at this one
 };
 
 /// Rows of text: key and value (no header), or a comparison with a header. Cells that look like numbers align right.
@@ -50,9 +61,10 @@ struct Report {
   std::vector<ReportPicture> pictures;  ///< so is the first of these
   std::vector<ReportTable> tables;
   const TimeTable* table = nullptr;  ///< must live until write_report() returns
-  std::string state_column;          ///< of `table`: 0 OK, 1 uncertain, 2 lost; "" for no state strip
-  std::string config_yaml;           ///< resolved configuration; "" for none
-  nlohmann::json summary;            ///< summary.json, embedded for scripts and shown; null for none
+  std::vector<ReportSeries>
+      states;               ///< columns of `table`: 0 OK, 1 uncertain, 2 lost; a strip each, named by its label
+  std::string config_yaml;  ///< resolved configuration; "" for none
+  nlohmann::json summary;   ///< summary.json, embedded for scripts and shown; null for none
 };
 
 /// The page as text. Throws std::invalid_argument for a column that the table lacks.

@@ -13,12 +13,16 @@
   function rows(plot) {
     const columns = data.tables[plot.table];
     const series = plot.series.map(s => columns[s.column]);
-    const value = v => v === null ? null : v * plot.scale;
+    const lowest = plot.log_from > 0 ? plot.log_from : -Infinity;
+    const value = v => v === null ? null : Math.max(v * plot.scale, lowest);
     return columns.time_s.map((t, i) => [t].concat(series.map(s => value(s[i]))));
   }
 
-  function colours(count) {
-    return Array.from({length: count}, (_, i) => css('--s' + (i % 7)));
+  // Seven colours, then the same ones dashed; truth broad and pale. Series are counted without it.
+  function pens(plot) {
+    let i = 0;
+    return plot.series.map(s => s.truth ? {color: css('--truth'), width: 7, mark: 'truth'} :
+        {color: css('--s' + (i % 7)), width: 1.3, mark: i++ % 14 < 7 ? '' : 'dashes'});
   }
 
   // What a screen reader says about a plot.
@@ -37,7 +41,8 @@
   }
 
   // As many decimals as tell a ten-thousandth of the largest value of the plot.
-  function value_format(table) {
+  function value_format(plot, table) {
+    if (plot.log_from > 0) return v => (v <= plot.log_from ? '≤ ' : '') + short(v);
     let largest = 0;
     for (const row of table)
       for (let i = 1; i < row.length; ++i) largest = Math.max(largest, Math.abs(row[i]));
@@ -46,17 +51,17 @@
   }
 
   // The names of the lines, with their values where the pointer is; the time stands beside the unit.
-  function legend(d) {
+  function legend(plot, d) {
+    const marks = pens(plot);
     d.dygraph.graphDiv.parentNode.previousElementSibling.querySelector('.at').textContent =
         d.x === undefined ? '' : 'at ' + d.xHTML;
-    return d.series.map(s => `<span class="key"><i style="border-color:${s.color}"></i>${s.labelHTML}` +
+    return d.series.map((s, i) => `<span class="key"><i class="${marks[i].mark}" style="color:${s.color}"></i>${s.labelHTML}` +
         `<b>${d.x === undefined ? '' : s.yHTML === undefined ? '–' : s.yHTML}</b></span>`).join('');
   }
 
   // Spans of frames that are not OK: [from, to, state] in seconds.
-  function troubled() {
-    if (!data.state) return [];
-    const t = data.tables[data.state.table].time_s, s = data.tables[data.state.table][data.state.column];
+  function troubled(row) {
+    const t = data.tables[row.table].time_s, s = data.tables[row.table][row.column];
     const spans = [];
     for (let i = 0; i < t.length; ++i) {
       if (!s[i]) continue;
@@ -65,9 +70,9 @@
     }
     return spans;
   }
-  const spans = troubled();
+  const troubles = data.states.map(troubled);
 
-  function paint(context, g, top, height, colour) {
+  function paint(spans, context, g, top, height, colour) {
     const [from, to] = g.xAxisRange(), area = g.getArea();
     for (const [a, b, state] of spans) {
       if (b < from || a > to) continue;
@@ -77,10 +82,11 @@
     }
   }
 
-  // One line in time, below the first plot: state by colour and by height, so that neither is needed alone.
-  function strip(g) {
-    const canvas = document.getElementById('strip');
-    if (!canvas || !data.state) return;
+  // A line in time for each tracker, below the first plot: state by colour and by height, so that neither is needed
+  // alone.
+  function strip(g, index) {
+    const canvas = document.getElementById('strip' + index);
+    if (!canvas) return;
     const ratio = window.devicePixelRatio || 1, w = g.size().width, h = 22, area = g.getArea();
     canvas.width = w * ratio; canvas.height = h * ratio;
     canvas.style.width = w + 'px';
@@ -88,7 +94,7 @@
     context.scale(ratio, ratio);
     context.fillStyle = css('--ok');
     context.fillRect(area.x, 15, area.w, 5);
-    paint(context, g, s => s === 2 ? 2 : 8, s => s === 2 ? 18 : 12, s => css(s === 2 ? '--lost' : '--uncertain'));
+    paint(troubles[index], context, g, s => s === 2 ? 2 : 8, s => s === 2 ? 18 : 12, s => css(s === 2 ? '--lost' : '--uncertain'));
   }
 
   // dygraphs takes every finger for a pan and so would stop a phone from scrolling the page: only two fingers zoom.
@@ -100,9 +106,14 @@
     });
   }
 
-  function look(count) {
+  function look(plot) {
+    const series = {};
+    pens(plot).forEach((pen, i) => {
+      series[plot.series[i].label] =
+          {color: pen.color, strokeWidth: pen.width, strokePattern: pen.mark === 'dashes' ? [6, 3] : null};
+    });
     return {
-      colors: colours(count), axisLineColor: css('--line'), gridLineColor: css('--line'),
+      series, axisLineColor: css('--line'), gridLineColor: css('--line'),
       rangeSelectorPlotStrokeColor: css('--quiet'), rangeSelectorPlotFillColor: css('--line'),
       rangeSelectorPlotFillGradientColor: css('--soft'), rangeSelectorBackgroundStrokeColor: css('--line'),
       rangeSelectorForegroundStrokeColor: css('--quiet'), rangeSelectorVeilColour: css('--veil')
@@ -118,21 +129,23 @@
     const first = index === 0;
     const g = new Dygraph(place, table, Object.assign({
       labels: ['time'].concat(plot.series.map(s => s.label)), labelsDiv: document.getElementById('legend' + index),
-      legend: 'always', legendFormatter: legend, strokeWidth: 1.3, highlightCircleSize: 3, axisLabelFontSize: 12,
+      legend: 'always', legendFormatter: d => legend(plot, d), logscale: plot.log_from > 0, highlightCircleSize: 3, axisLabelFontSize: 12,
       xRangePad: 0, interactionModel: interaction(), showRangeSelector: first, rangeSelectorHeight: 28,
       axes: {
         x: {valueFormatter: seconds, axisLabelFormatter: v => +v.toFixed(6) + ' s', pixelsPerLabel: 70},
-        y: {valueFormatter: value_format(table), axisLabelWidth: 44, pixelsPerLabel: 32}
+        y: Object.assign({valueFormatter: value_format(plot, table), axisLabelWidth: 44, pixelsPerLabel: 32},
+            plot.log_from > 0 ? {axisLabelFormatter: short} : {})
       },
-      underlayCallback: (context, area, me) => paint(context, me, () => area.y, () => area.h,
-          s => css(s === 2 ? '--shade-lost' : '--shade-uncertain')),
+      // the troubles of several trackers would lie over each other: the gaps in their lines tell
+      underlayCallback: (context, area, me) => troubles.length === 1 && paint(troubles[0], context, me, () => area.y,
+          () => area.h, s => css(s === 2 ? '--shade-lost' : '--shade-uncertain')),
       drawCallback: me => {
         document.body.classList.toggle('zoomed', me.isZoomed('x'));
-        if (first) strip(me);
+        if (first) data.states.forEach((_, i) => strip(me, i));
       }
-    }, look(plot.series.length)));
+    }, look(plot)));
     place.addEventListener('keydown', e => keys(e, g));
-    graphs.push({g, count: plot.series.length});
+    graphs.push({g, plot});
   });
   if (graphs.length > 1) Dygraph.synchronize(graphs.map(p => p.g), {selection: true, zoom: true, range: false});
 
@@ -155,25 +168,25 @@
     actions[e.key]();
   }
 
-  function shares() {
-    const place = document.getElementById('shares');
-    if (!place || !data.state) return;
-    const s = data.tables[data.state.table][data.state.column], count = [0, 0, 0];
+  function shares(row, index) {
+    const place = document.getElementById('shares' + index);
+    if (!place) return;
+    const s = data.tables[row.table][row.column], count = [0, 0, 0];
     for (const v of s) count[v === null ? 2 : v] += 1;
     const names = ['--ok', '--uncertain', '--lost'];
     place.innerHTML = STATES.map((name, i) => `<span class="key"><i style="background:var(${names[i]})"></i>${name} ` +
         `${(100 * count[i] / Math.max(s.length, 1)).toFixed(1)} %</span>`).join('');
   }
-  shares();
+  data.states.forEach(shares);
 
-  function recolour() { graphs.forEach(p => p.g.updateOptions(look(p.count))); }
+  function recolour() { graphs.forEach(p => p.g.updateOptions(look(p.plot))); }
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', recolour);
   // The window does not resize for paper.
   const open = [];
   addEventListener('beforeprint', () => {
     document.documentElement.classList.add('paper');  // the page is still dark at this moment, if it is
     graphs.forEach((p, i) => {
-      p.g.updateOptions(look(p.count), true);
+      p.g.updateOptions(look(p.plot), true);
       p.g.resize(PRINT_WIDTH, i === 0 ? 250 : 190);
     });
     document.querySelectorAll('details:not([open])').forEach(d => { d.open = true; open.push(d); });

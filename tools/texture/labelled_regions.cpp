@@ -1,12 +1,13 @@
 #include "tools/texture/labelled_regions.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <fstream>
+#include <cmath>
 #include <map>
 
+#include "sim/table/csv_rows.hpp"
 #include "tracking/frames/picture_file.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/texture/feature_bank.hpp"
@@ -15,29 +16,16 @@ namespace heartservo::tools {
 
 namespace {
 
-constexpr const char* kHeader = "file,x,y,width,height,class";
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\""), last = text.find_last_not_of(" \t\r\"");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+const std::vector<std::string>& header() {
+  static const std::vector<std::string> names{"file", "x", "y", "width", "height", "class"};
+  return names;
 }
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  for (std::size_t at = 0; at <= line.size();) {
-    const std::size_t comma = std::min(line.find(',', at), line.size());
-    cells.push_back(trimmed(line.substr(at, comma - at)));
-    at = comma + 1;
-  }
-  return cells;
-}
-
-int whole_number(const std::string& cell, const std::string& where) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size())
-    throw InputError(fmt::format("{}: '{}' is not a whole number of px", where, cell));
-  return value;
+int whole_number(const sim::CsvRows& rows, std::size_t column) {
+  const double value = rows.number(column);
+  if (value != std::floor(value) || std::abs(value) > 1e6)
+    rows.fail(fmt::format("'{}' is not a whole number of px", rows.cells()[column]));
+  return static_cast<int>(value);
 }
 
 }  // namespace
@@ -52,33 +40,25 @@ cv::Mat region_of(const cv::Mat& grey, const cv::Rect& r, const std::string& nam
 }
 
 std::vector<LabelledRegion> read_labelled_regions(const std::filesystem::path& csv) {
-  std::ifstream in(csv);
-  if (!in || std::filesystem::is_directory(csv)) throw InputError(csv.string() + ": cannot be read; check the path");
-  std::string line;
-  std::getline(in, line);
-  if (line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
-  if (cells_of(line) != cells_of(kHeader))
-    throw InputError(fmt::format("{}:1: expected the header {}", csv.string(), kHeader));
+  const std::string expected = fmt::format("the header {}", fmt::join(header(), ","));
+  sim::CsvRows rows(csv, expected);
+  if (rows.names() != header()) rows.fail("expected " + expected);
   std::vector<LabelledRegion> regions;
   std::map<std::string, cv::Mat> pictures;
-  for (int number = 2; std::getline(in, line); ++number) {
-    if (trimmed(line).empty()) continue;
-    const std::string where = fmt::format("{}:{}", csv.string(), number);
-    const auto cells = cells_of(line);
-    if (cells.size() != 6) throw InputError(fmt::format("{}: {} cells under 6 columns", where, cells.size()));
-    if (cells[0].empty() || cells[5].empty()) throw InputError(where + ": file or class is empty");
-    const auto [place, is_new] = pictures.try_emplace(cells[0]);
+  while (rows.next()) {
+    const std::string file(rows.cells()[0]), label(rows.cells()[5]);
+    if (file.empty() || label.empty()) rows.fail("file or class is empty");
+    const auto [place, is_new] = pictures.try_emplace(file);
     if (is_new) {
-      const tracking::Picture picture = tracking::read_picture((csv.parent_path() / cells[0]).string());
-      if (!picture.problem.empty()) throw InputError(where + ": " + picture.problem);
+      const tracking::Picture picture = tracking::read_picture((csv.parent_path() / file).string());
+      if (!picture.problem.empty()) rows.fail(picture.problem);
       place->second = picture.grey;
     }
-    const cv::Rect rect(whole_number(cells[1], where), whole_number(cells[2], where), whole_number(cells[3], where),
-                        whole_number(cells[4], where));
+    const cv::Rect rect(whole_number(rows, 1), whole_number(rows, 2), whole_number(rows, 3), whole_number(rows, 4));
     try {
-      regions.push_back({region_of(place->second, rect, cells[0]), cells[5]});
+      regions.push_back({region_of(place->second, rect, file), label});
     } catch (const ConfigError& e) {
-      throw InputError(where + ": " + e.what());
+      rows.fail(e.what());
     }
   }
   if (regions.empty()) throw InputError(csv.string() + ": has a header and no regions");

@@ -79,7 +79,8 @@ void read_size(Camera& camera, const cv::FileStorage& storage, const std::string
 }
 
 // ORB-SLAM: one key per number; `prefix` is "Camera." or "Camera1.". Absent distortion is none.
-void read_scalars(Camera& camera, const cv::FileStorage& storage, const std::string& file, const std::string& prefix) {
+void read_scalars(CameraFile& camera, const cv::FileStorage& storage, const std::string& file,
+                  const std::string& prefix) {
   const auto get = [&](const char* name, bool needed) {
     const std::string key = prefix + name;
     const cv::FileNode node = storage[key];
@@ -95,7 +96,7 @@ void read_scalars(Camera& camera, const cv::FileStorage& storage, const std::str
                  file, prefix + "k1 .. k3");
 }
 
-void read_matrices(Camera& camera, const cv::FileStorage& storage, const std::string& file) {
+void read_matrices(CameraFile& camera, const cv::FileStorage& storage, const std::string& file) {
   const Names distortions{
       "distortion_coefficients", "distCoeffs", "Distortion_Coefficients", "dist_coeffs", "D", "LEFT.D", "D1"};
   const auto [matrix, matrix_name] = first_of(storage, MATRICES);
@@ -110,13 +111,14 @@ void read_matrices(Camera& camera, const cv::FileStorage& storage, const std::st
 
 }  // namespace
 
-Camera read_opencv_camera(const std::string& text, const std::string& file) {
+CameraFile read_opencv_camera(const std::string& text, const std::string& file) {
   const bool needs_header = text.find("<opencv_storage") == std::string::npos && text.rfind("%YAML", 0) != 0;
   try {
     const cv::FileStorage storage(needs_header ? "%YAML:1.0\n---\n" + text : text,
                                   cv::FileStorage::READ | cv::FileStorage::MEMORY);
     if (!storage.isOpened()) throw InputError(file + ": cannot be read as OpenCV FileStorage; check the file");
-    Camera camera;
+    CameraFile camera;
+    camera.format = CameraFormat::OPENCV;
     // An ORB-SLAM stereo file has both: LEFT.K for the picture as taken, which is what trackers see here, and Camera.fx
     // for the rectified one.
     const bool scalars = first_of(storage, MATRICES).second.empty();
@@ -126,11 +128,21 @@ Camera read_opencv_camera(const std::string& text, const std::string& file) {
       read_scalars(camera, storage, file, "Camera1.");
     else
       read_matrices(camera, storage, file);
-    read_size(camera, storage, file);
+    read_size(camera.camera.camera, storage, file);
     return camera;
   } catch (const cv::Exception& e) {
     throw InputError(fmt::format("{}: not a readable OpenCV FileStorage: {}; write it again", file, e.err));
   }
+}
+
+std::string opencv_text(const WideCamera& wide, bool xml) {
+  const Camera& c = wide.camera;
+  const cv::Mat K = (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
+  const cv::Mat D = (cv::Mat_<double>(1, 5) << c.k1, c.k2, c.k3, c.k4, wide.k5);
+  cv::FileStorage out(xml ? ".xml" : ".yaml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+  out << "image_width" << c.width << "image_height" << c.height << "camera_matrix" << K << "distortion_coefficients"
+      << D;
+  return out.releaseAndGetString();
 }
 
 }  // namespace heartservo::tracking

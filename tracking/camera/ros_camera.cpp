@@ -23,8 +23,8 @@ class RosFile {
     std::vector<std::string> present;
     for (const auto& entry : root_)
       if (entry.first.IsScalar()) present.push_back(entry.first.Scalar());
-    throw InputError(fmt::format("{}: {}: key is missing{}; expected a ROS, OpenCV or ViSP camera file", file_, name,
-                                 did_you_mean(name, present)));
+    throw InputError(fmt::format("{}: {}: key is missing{}; expected a ROS, OpenCV, ViSP or Matlab camera file", file_,
+                                 name, did_you_mean(name, present)));
   }
 
   int size(const std::string& name) const {
@@ -65,11 +65,11 @@ class RosFile {
 
 }  // namespace
 
-Camera read_ros_camera(const YAML::Node& root, const std::string& file) {
+CameraFile read_ros_camera(const YAML::Node& root, const std::string& file) {
   const RosFile ros(root, file);
-  Camera camera;
-  camera.width = ros.size("image_width");
-  camera.height = ros.size("image_height");
+  CameraFile camera;
+  camera.camera.camera.width = ros.size("image_width");
+  camera.camera.camera.height = ros.size("image_height");
   set_matrix(camera, ros.matrix("camera_matrix"), ros.at(root["camera_matrix"]), "camera_matrix.data");
   const YAML::Node model = ros.key("distortion_model");
   if (!model.IsScalar() || model.Scalar() != "plumb_bob")
@@ -82,6 +82,21 @@ Camera read_ros_camera(const YAML::Node& root, const std::string& file) {
         fmt::format("{}: {}.data: plumb_bob has 4 or 5 numbers, not {}", ros.at(root[key]), key, k.size()));
   set_distortion(camera, k, ros.at(root[key]), key + ".data");
   return camera;
+}
+
+std::string ros_text(const WideCamera& wide, const std::string& name) {
+  const Camera& camera = wide.camera;
+  YAML::Emitter quoted_name;
+  quoted_name << YAML::DoubleQuoted << name;
+  return fmt::format(
+      "image_width: {}\nimage_height: {}\ncamera_name: {}\n"
+      "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [{fx}, 0, {cx}, 0, {fy}, {cy}, 0, 0, 1]\n"
+      "distortion_model: plumb_bob\n"
+      "distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [{}, {}, {}, {}, {}]\n"
+      "rectification_matrix:\n  rows: 3\n  cols: 3\n  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
+      "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [{fx}, 0, {cx}, 0, 0, {fy}, {cy}, 0, 0, 0, 1, 0]\n",
+      camera.width, camera.height, quoted_name.c_str(), camera.k1, camera.k2, camera.k3, camera.k4, wide.k5,
+      fmt::arg("fx", camera.fx), fmt::arg("fy", camera.fy), fmt::arg("cx", camera.cx), fmt::arg("cy", camera.cy));
 }
 
 }  // namespace heartservo::tracking

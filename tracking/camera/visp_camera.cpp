@@ -32,7 +32,7 @@ std::vector<std::string> camera_names(std::string text) {
 
 }  // namespace
 
-Camera read_visp_camera(const std::string& text, const std::string& file) {
+CameraFile read_visp_camera(const std::string& text, const std::string& file) {
   const auto names = camera_names(text);
   if (names.empty()) throw InputError(file + ": holds no <camera>; expected ViSP's or OpenCV's XML");
   if (names.size() > 1)
@@ -51,9 +51,10 @@ Camera read_visp_camera(const std::string& text, const std::string& file) {
     if (parser.getWidth() == 0 || parser.getHeight() == 0)
       throw InputError(fmt::format("{}: {}: is missing or 0; add the size of the picture in px", file,
                                    parser.getWidth() == 0 ? "image_width" : "image_height"));
-    Camera camera;
-    camera.width = static_cast<int>(parser.getWidth());
-    camera.height = static_cast<int>(parser.getHeight());
+    CameraFile camera;
+    camera.format = CameraFormat::VISP;
+    camera.camera.camera.width = static_cast<int>(parser.getWidth());
+    camera.camera.camera.height = static_cast<int>(parser.getHeight());
     set_matrix(camera,
                {parameters.get_px(), 0, parameters.get_u0(), 0, parameters.get_py(), parameters.get_v0(), 0, 0, 1},
                file, "px, py, u0, v0");
@@ -69,6 +70,24 @@ Camera read_visp_camera(const std::string& text, const std::string& file) {
   throw InputError(file +
                    ": model: no complete perspectiveProjWithDistortion (px, py, u0, v0, kud, kdu) or "
                    "perspectiveProjWithoutDistortion; save it again with vpXmlParserCamera");
+}
+
+std::string visp_text(const Camera& camera, double kdu, const std::string& name) {
+  std::string plain;  // what needs no escaping in XML
+  for (const char c : name) plain += c == '<' || c == '>' || c == '&' || c == '"' ? '_' : c;
+  const auto model = [&](const char* type, const std::string& distortion) {
+    return fmt::format(
+        "    <model>\n      <type>{}</type>\n      <px>{}</px>\n      <py>{}</py>\n      <u0>{}</u0>\n      "
+        "<v0>{}</v0>\n{}    </model>\n",
+        type, camera.fx, camera.fy, camera.cx, camera.cy, distortion);
+  };
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>{}</name>\n    <image_width>{}</image_width>\n    "
+      "<image_height>{}</image_height>\n{}  </camera>\n</root>\n",
+      plain, camera.width, camera.height,
+      camera.has_distortion() ? model("perspectiveProjWithDistortion",
+                                      fmt::format("      <kud>{}</kud>\n      <kdu>{}</kdu>\n", camera.k1, kdu))
+                              : model("perspectiveProjWithoutDistortion", ""));
 }
 
 }  // namespace heartservo::tracking

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "tracking/planar/bent_grid.hpp"
 #include "tracking/planar/normal_equations.hpp"
 #include "tracking/planar/sl3.hpp"
 
@@ -10,10 +11,11 @@ namespace heartservo::tracking {
 
 namespace {
 
-constexpr int kSmallestSide = 9;        // points; a coarser template says nothing
-constexpr double kNear_px = 0.1;        // where bilinear sampling has done its part; twice that a level up
-constexpr int kLastIterations = 5;      // with cubic sampling
-constexpr double kSmallestShare = 0.3;  // of the template's points must be in the picture
+constexpr int kSmallestSide = 9;            // points; a coarser template says nothing
+constexpr std::size_t kAffinePoints = 500;  // fewer tell a shift, but with glare on them no shape
+constexpr double kNear_px = 0.1;            // where bilinear sampling has done its part; twice that a level up
+constexpr int kLastIterations = 5;          // with cubic sampling
+constexpr double kSmallestShare = 0.3;      // of the template's points must be in the picture
 
 class EsmAligner final : public PatchAligner {
  public:
@@ -24,6 +26,7 @@ class EsmAligner final : public PatchAligner {
     camera_ = camera;
     patches_.clear();
     usable_.clear();
+    grids_.clear();
     for (int level = 0; level < picture.levels(); ++level) {
       const int width = (side_x >> level) + 1, height = (side_y >> level) + 1;
       if (level > 0 && std::min(width, height) < kSmallestSide) break;
@@ -31,6 +34,7 @@ class EsmAligner final : public PatchAligner {
       double usable = 0;
       for (const float u : patches_.back().usable) usable += static_cast<double>(u);
       usable_.push_back(usable);
+      if (options_.cell_px > 0) grids_.emplace_back(bend_of(side_x, side_y, options_.cell_px), patches_.back());
     }
     half_side_px_ = 0.5 * std::max(side_x, side_y);
     buffers_.resize(patches_.front().size());
@@ -44,11 +48,12 @@ class EsmAligner final : public PatchAligner {
     Alignment a = start;
     a.iterations = 0;
     moved_.setZero();
+    start_gain_ = start.gain;
     coarsest = std::min({coarsest, picture.levels() - 1, static_cast<int>(patches_.size()) - 1});
     // Bilinear sampling to come near, cubic for the last steps. A coarse level has too few points for the perspective
     // terms: affine is enough to come near.
     for (int level = coarsest; level >= 0; --level)
-      if (!descend(picture.level(level), level, Interpolation::LINEAR, level > 0 ? MotionModel::AFFINE : model,
+      if (!descend(picture.level(level), level, Interpolation::LINEAR, level > 0 ? coarse_model(level) : model,
                    options_.max_iterations, kNear_px * (1 << level), a))
         return a;
     a.converged = descend(picture.level(0), 0, Interpolation::CUBIC, model, kLastIterations, options_.step_px, a);
@@ -56,6 +61,11 @@ class EsmAligner final : public PatchAligner {
   }
 
  private:
+  MotionModel coarse_model(int level) const {
+    return patches_[static_cast<std::size_t>(level)].size() < kAffinePoints ? MotionModel::TRANSLATION
+                                                                            : MotionModel::AFFINE;
+  }
+
   // Iterates until no corner moves by more than `step_px`; false when there is nothing to align with. What the last
   // pass saw is what the alignment is judged by: the step after it is too small to matter.
   bool descend(const PyramidLevel& picture, int level, Interpolation interpolation, MotionModel model, int iterations,
@@ -63,20 +73,23 @@ class EsmAligner final : public PatchAligner {
     const Patch& patch = patches_[static_cast<std::size_t>(level)];
     const double usable = usable_[static_cast<std::size_t>(level)];
     a.converged = false;
+    BentPoints bent;
+    if (a.bend.cols() > 0 && !grids_.empty()) bent = grids_[static_cast<std::size_t>(level)].bend(a.bend);
     for (int i = 0; i < iterations; ++i, ++a.iterations) {
-      warp(picture, camera_, a.G_plane_patch, patch, interpolation, buffers_.grey.data(), buffers_.inside.data());
-      const AlignmentPass pass = esm_pass(patch, a.gain, a.bias, buffers_);
+      warp(picture, camera_, a.G_plane_patch, patch, interpolation, buffers_.grey.data(), buffers_.inside.data(), bent);
+      const AlignmentPass pass = esm_pass(patch, {a.gain, a.bias, bent.gain_offset}, buffers_);
       if (pass.points < kSmallestShare * usable) return false;
       Vector10d step;
       if (!solve(pass, static_cast<int>(model), step)) return false;
       moved_ += step;
       const Eigen::Matrix3d M = sl3_exp(step.head<8>());
       a.G_plane_patch = to_sl3(a.G_plane_patch * M);
-      a.gain += step[8];
+      a.gain = std::clamp(a.gain + step[8], start_gain_ / (1 + options_.gain_change),
+                          start_gain_ * (1 + options_.gain_change));
       a.bias += step[9];
       if (!a.G_plane_patch.allFinite() || !(a.gain > 0.05 && a.gain < 20)) return false;
       const bool last = corner_step(M) * half_side_px_ < step_px || i + 1 == iterations;
-      if (last && interpolation == Interpolation::CUBIC) judge(patch, pass, usable, a);
+      if (last && interpolation == Interpolation::CUBIC) judge(patch, pass, usable, bent.gain_offset, a);
       if (last) break;
     }
     return true;
@@ -118,10 +131,11 @@ class EsmAligner final : public PatchAligner {
     return largest;
   }
 
-  void judge(const Patch& patch, const AlignmentPass& pass, double usable, Alignment& a) const {
+  void judge(const Patch& patch, const AlignmentPass& pass, double usable, const float* gain_offset,
+             Alignment& a) const {
     a.noise_grey = pass.noise_grey;
     a.visible = usable > 0 ? pass.weight / usable : 0;
-    const Correlation c = correlation(patch, buffers_);
+    const Correlation c = correlation(patch, {a.gain, a.bias, gain_offset}, buffers_);
     a.correlation = c.believed;
     a.correlation_all = c.all;
   }
@@ -130,9 +144,10 @@ class EsmAligner final : public PatchAligner {
   Camera camera_;
   std::vector<Patch> patches_;
   std::vector<double> usable_;
+  std::vector<BentGrid> grids_;  // of a region that bends
   AlignmentBuffers buffers_;
   Vector10d moved_ = Vector10d::Zero();  // from the start of this alignment, to first order
-  double half_side_px_ = 1;
+  double half_side_px_ = 1, start_gain_ = 1;
 };
 
 }  // namespace

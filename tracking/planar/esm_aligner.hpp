@@ -12,6 +12,8 @@ struct EsmOptions {
   double step_px = 0.01;       ///< stop when no corner moves further than this
   double affine_sigma = 0.05;  ///< by how much the region's shape may change between frames: rotation, stretch, scale
   double perspective_sigma = 0.003;  ///< the same for the perspective terms (1 / half the longer side)
+  double gain_change = 0.5;   ///< the light changes no more between frames; beside the place a plain fit is no gain
+  double cell_px = 0;         ///< above 0: for regions bent by a SplineBend of such cells, which is kept as it is
 };
 
 std::unique_ptr<PatchAligner> make_esm_aligner(const EsmOptions& options);

@@ -12,17 +12,26 @@ struct PyramidLevel {
   float scale = 1;  ///< 2^-level
 };
 
-/// Grey picture in float, halved again and again (Gaussian, cv::pyrDown), only inside a window of it.
+/// Grey values from this on are glare or clipping and say nothing about the tissue.
+inline constexpr float kSaturatedGrey = 240;
+
+/// Grey picture in float, halved again and again (Gaussian, cv::pyrDown), only inside a window of it. Glare is not
+/// smeared into the coarse levels: their pixels are means over what is clear (normalised convolution, Knutsson &
+/// Westin, CVPR 1993), and 255 where little is.
 class ImagePyramid {
  public:
   /// `window` is clipped to the picture and widened to multiples of 2^(levels-1). Memory is kept between calls.
-  void build(const cv::Mat& grey, const cv::Rect& window, int levels);
+  void build(const cv::Mat& grey, const cv::Rect& window, int levels, double glare_grey = kSaturatedGrey);
 
   int levels() const { return count_; }
   const PyramidLevel& level(int i) const { return levels_[static_cast<std::size_t>(i)]; }
 
  private:
+  /// Makes levels 1 and up; false, and nothing done, where there is no glare in the window.
+  bool halve_around_glare(const cv::Mat& grey, double glare_grey);
+
   std::vector<PyramidLevel> levels_;
+  cv::Mat glare_, share_, clear_[2], clear_grey_[2];
   int count_ = 0;
 };
 

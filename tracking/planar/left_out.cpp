@@ -1,5 +1,6 @@
 #include "tracking/planar/left_out.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "tracking/planar/normal_equations.hpp"
@@ -20,16 +21,19 @@ double grey_at(const PyramidLevel& picture, const Eigen::Vector2d& at) {
 
 }  // namespace
 
-void mark_left_out(const PyramidLevel& picture, const Patch& patch, const Alignment& a,
-                   const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& place, cv::Mat& mask) {
+void mark_left_out(const PyramidLevel& picture, const Camera& camera, const PatchAligner& aligner, const Alignment& a,
+                   cv::Mat& mask) {
+  const Patch& patch = aligner.patch(0);
   const double strange = kTukey * std::max(kSmallestNoise, a.noise_grey);
   for (int row = 1; row + 1 < patch.height; ++row)
     for (int column = 1; column + 1 < patch.width; ++column) {
       const auto i = static_cast<std::size_t>(row * patch.width + column);
-      const Eigen::Vector2d at = place({patch.x_of(column), patch.y_of(row)});
+      const Eigen::Vector2d point(patch.x_of(column), patch.y_of(row));
+      const Eigen::Vector3d plane = a.G_plane_patch * aligner.bent(a, point).homogeneous();
+      const Eigen::Vector2d at = camera.to_pixel(camera.distort(plane.hnormalized()));
       const double grey = grey_at(picture, at);
       if (std::isnan(grey)) continue;
-      const double residual = a.gain * grey + a.bias - static_cast<double>(patch.grey[i]);
+      const double residual = aligner.gain_at(a, point) * grey + a.bias - static_cast<double>(patch.grey[i]);
       if (patch.usable[i] > 0 && grey < static_cast<double>(kSaturatedGrey) && std::abs(residual) < strange) continue;
       const int u = static_cast<int>(at.x()), v = static_cast<int>(at.y());
       // two by two, so that a region seen larger than it was learnt shows no holes

@@ -16,14 +16,28 @@ constexpr std::size_t kMedianPoints = 512;  // enough for a scale estimate
 
 using Block = std::array<std::array<float, kBlock>, kRows>;
 
-HEARTSERVO_SIMD void residual_pass(const float* __restrict grey, const float* __restrict inside,
-                                   const float* __restrict reference, std::size_t n, float gain, float bias,
-                                   float* __restrict residual, float* __restrict clear) {
+// `gain_offset` has n elements, or, with kOffset false, is not looked at.
+template <bool kOffset>
+inline __attribute__((always_inline)) void residuals(const float* __restrict grey, const float* __restrict inside,
+                                                     const float* __restrict reference,
+                                                     const float* __restrict gain_offset, std::size_t n, float gain,
+                                                     float bias, float* __restrict residual, float* __restrict clear) {
 #pragma omp simd
   for (std::size_t i = 0; i < n; ++i) {
-    residual[i] = gain * grey[i] + bias - reference[i];
+    float g = gain;
+    if constexpr (kOffset) g += gain_offset[i];
+    residual[i] = g * grey[i] + bias - reference[i];
     clear[i] = inside[i] * (grey[i] < kSaturatedGrey ? 1.0F : 0.0F);
   }
+}
+HEARTSERVO_SIMD void residual_pass(const Patch& patch, float gain, float bias, AlignmentBuffers& b) {
+  residuals<false>(b.grey.data(), b.inside.data(), patch.grey.data(), nullptr, patch.size(), gain, bias,
+                   b.residual.data(), b.clear.data());
+}
+HEARTSERVO_SIMD void residual_pass_offset(const Patch& patch, float gain, float bias, const float* gain_offset,
+                                          AlignmentBuffers& b) {
+  residuals<true>(b.grey.data(), b.inside.data(), patch.grey.data(), gain_offset, patch.size(), gain, bias,
+                  b.residual.data(), b.clear.data());
 }
 
 // A point counts when it and its four neighbours, which its gradient is made of, are clear of glare.
@@ -123,13 +137,13 @@ void AlignmentBuffers::resize(std::size_t n) {
   for (auto* v : {&grey, &inside, &clear, &residual, &weight, &sample}) v->resize(std::max(v->size(), n));
 }
 
-AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBuffers& b) {
-  AlignmentPass pass;
-  pass.JtJ.setZero();
-  pass.Jtr.setZero();
+void weigh_points(const Patch& patch, const Light& light, AlignmentBuffers& b, AlignmentPass& pass) {
   const std::size_t n = patch.size();
-  residual_pass(b.grey.data(), b.inside.data(), patch.grey.data(), n, static_cast<float>(gain),
-                static_cast<float>(bias), b.residual.data(), b.clear.data());
+  const float gain = static_cast<float>(light.gain), bias = static_cast<float>(light.bias);
+  if (light.gain_offset)
+    residual_pass_offset(patch, gain, bias, light.gain_offset, b);
+  else
+    residual_pass(patch, gain, bias, b);
   const std::ptrdiff_t stride = patch.width;
   std::fill_n(b.weight.begin(), n, 0.0F);
   for (std::ptrdiff_t row = 1; row + 1 < patch.height; ++row) {
@@ -142,7 +156,13 @@ AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBu
   pass.weight = static_cast<double>(
       tukey_pass(b.residual.data(), b.weight.data(), n,
                  1.0F / (static_cast<float>(kTukey) * std::max(noise, static_cast<float>(kSmallestNoise)))));
+}
 
+AlignmentPass esm_pass(const Patch& patch, const Light& light, AlignmentBuffers& b) {
+  AlignmentPass pass;
+  pass.JtJ.setZero();
+  pass.Jtr.setZero();
+  weigh_points(patch, light, b, pass);
   Block J;
   std::size_t filled = 0;
   const auto width = static_cast<std::size_t>(patch.width);
@@ -159,7 +179,7 @@ AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBu
                         patch.x_of(static_cast<int>(column)),
                         patch.step,
                         patch.y_of(row),
-                        0.25F * static_cast<float>(gain) / patch.step};
+                        0.25F * static_cast<float>(light.gain) / patch.step};
       jacobian_row(in, count, filled, J);
       filled += count;
       column += count;
@@ -193,10 +213,11 @@ struct Moments {
 
 }  // namespace
 
-Correlation correlation(const Patch& patch, const AlignmentBuffers& b) {
+Correlation correlation(const Patch& patch, const Light& light, const AlignmentBuffers& b) {
   Moments believed, all;
   for (std::size_t i = 0; i < patch.size(); ++i) {
-    const double x = static_cast<double>(b.grey[i]), y = static_cast<double>(patch.grey[i]);
+    const double gain = light.gain + (light.gain_offset ? static_cast<double>(light.gain_offset[i]) : 0.0);
+    const double x = gain * static_cast<double>(b.grey[i]), y = static_cast<double>(patch.grey[i]);
     believed.add(static_cast<double>(b.weight[i]), x, y);
     if (b.grey[i] < kSaturatedGrey) all.add(static_cast<double>(patch.usable[i] * b.inside[i]), x, y);
   }

@@ -31,16 +31,25 @@ struct AlignmentPass {
   double weight = 0;      ///< sum of their robust weights
 };
 
+/// template = (gain + gain_offset) * picture + bias
+struct Light {
+  double gain = 1, bias = 0;
+  const float* gain_offset = nullptr;  ///< of every point of the patch, or null
+};
+
 /// residual = gain * buffers.grey + bias - template, on usable points; Tukey weights scaled by the median absolute
 /// deviation; J of the efficient second-order minimisation (Benhimane & Malis 2004): the mean of the picture's and
 /// the template's gradient.
-AlignmentPass esm_pass(const Patch& patch, double gain, double bias, AlignmentBuffers& buffers);
+AlignmentPass esm_pass(const Patch& patch, const Light& light, AlignmentBuffers& buffers);
 
-/// Zero-mean normalised correlation of template and buffers.grey.
+/// Its first half: residuals and robust weights only. JtJ and Jtr stay unset.
+void weigh_points(const Patch& patch, const Light& light, AlignmentBuffers& buffers, AlignmentPass& pass);
+
+/// Zero-mean normalised correlation of the template and buffers.grey in that light.
 struct Correlation {
   double believed = 0;  ///< under buffers.weight, as the last pass left it: glare and occlusion are left out
   double all = 0;       ///< over every usable point that is not saturated
 };
-Correlation correlation(const Patch& patch, const AlignmentBuffers& buffers);
+Correlation correlation(const Patch& patch, const Light& light, const AlignmentBuffers& buffers);
 
 }  // namespace heartservo::tracking

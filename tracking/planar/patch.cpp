@@ -8,8 +8,10 @@ namespace {
 
 // Everything the inner loop needs, in floats: 3e-8 on the normalised plane is 2e-5 px.
 struct WarpRow {
-  float q0, q1, q2;     // G (x, y, 1) at the row's first point
-  float dq0, dq1, dq2;  // per column
+  float q0, q1, q2;     // G (x, y, 1) at the row's first point; of bent points G's last column
+  float dq0, dq1, dq2;  // per column; of bent points G's first column
+  float eq0, eq1, eq2;  // G's second column
+  const float *bent_x, *bent_y;
   float fx, fy, cx, cy, k1, k2, k3, k4;
   float scale, u0, v0;
   const float* image;
@@ -24,10 +26,18 @@ struct SamplePoint {
   int at;
 };
 
+template <bool kBent>
 inline __attribute__((always_inline)) SamplePoint sample_point(const WarpRow& w, int i) {
-  const float t = static_cast<float>(i);
-  const float inverse = 1.0F / (w.q2 + t * w.dq2);
-  const float x = (w.q0 + t * w.dq0) * inverse, y = (w.q1 + t * w.dq1) * inverse;
+  float x, y;
+  if constexpr (kBent) {
+    const float a = w.bent_x[i], b = w.bent_y[i];
+    const float inverse = 1.0F / (w.q2 + a * w.dq2 + b * w.eq2);
+    x = (w.q0 + a * w.dq0 + b * w.eq0) * inverse, y = (w.q1 + a * w.dq1 + b * w.eq1) * inverse;
+  } else {
+    const float t = static_cast<float>(i);
+    const float inverse = 1.0F / (w.q2 + t * w.dq2);
+    x = (w.q0 + t * w.dq0) * inverse, y = (w.q1 + t * w.dq1) * inverse;
+  }
   const float r2 = x * x + y * y, xy2 = 2 * x * y;
   const float radial = 1 + r2 * (w.k1 + r2 * w.k2);  // eq. 3
   const float xd = x * radial + w.k3 * xy2 + w.k4 * (r2 + 2 * x * x);
@@ -41,10 +51,12 @@ inline __attribute__((always_inline)) SamplePoint sample_point(const WarpRow& w,
           iv * w.stride + iu};
 }
 
-HEARTSERVO_SIMD void warp_row_linear(const WarpRow& w, float* __restrict grey, float* __restrict inside) {
+template <bool kBent>
+inline __attribute__((always_inline)) void linear_row(const WarpRow& w, float* __restrict grey,
+                                                      float* __restrict inside) {
 #pragma omp simd
   for (int i = 0; i < w.columns; ++i) {
-    const SamplePoint s = sample_point(w, i);
+    const SamplePoint s = sample_point<kBent>(w, i);
     const float* p = w.image + s.at;
     const float top = p[0] + s.a * (p[1] - p[0]);
     const float bottom = p[w.stride] + s.a * (p[w.stride + 1] - p[w.stride]);
@@ -58,10 +70,12 @@ inline __attribute__((always_inline)) float cubic(float a, float p0, float p1, f
   return p1 + 0.5F * a * (p2 - p0 + a * (2 * p0 - 5 * p1 + 4 * p2 - p3 + a * (3 * (p1 - p2) + p3 - p0)));
 }
 
-HEARTSERVO_SIMD void warp_row_cubic(const WarpRow& w, float* __restrict grey, float* __restrict inside) {
+template <bool kBent>
+inline __attribute__((always_inline)) void cubic_row(const WarpRow& w, float* __restrict grey,
+                                                     float* __restrict inside) {
 #pragma omp simd
   for (int i = 0; i < w.columns; ++i) {
-    const SamplePoint s = sample_point(w, i);
+    const SamplePoint s = sample_point<kBent>(w, i);
     const float* p = w.image + s.at;
     const int n = w.stride;
     grey[i] = cubic(s.b, cubic(s.a, p[-n - 1], p[-n], p[1 - n], p[2 - n]), cubic(s.a, p[-1], p[0], p[1], p[2]),
@@ -71,10 +85,24 @@ HEARTSERVO_SIMD void warp_row_cubic(const WarpRow& w, float* __restrict grey, fl
   }
 }
 
+using RowFunction = void(const WarpRow& w, float* __restrict grey, float* __restrict inside);
+HEARTSERVO_SIMD void warp_row_linear(const WarpRow& w, float* __restrict grey, float* __restrict inside) {
+  linear_row<false>(w, grey, inside);
+}
+HEARTSERVO_SIMD void warp_row_cubic(const WarpRow& w, float* __restrict grey, float* __restrict inside) {
+  cubic_row<false>(w, grey, inside);
+}
+HEARTSERVO_SIMD void warp_bent_row_linear(const WarpRow& w, float* __restrict grey, float* __restrict inside) {
+  linear_row<true>(w, grey, inside);
+}
+HEARTSERVO_SIMD void warp_bent_row_cubic(const WarpRow& w, float* __restrict grey, float* __restrict inside) {
+  cubic_row<true>(w, grey, inside);
+}
+
 }  // namespace
 
 void warp(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, const Patch& patch,
-          Interpolation interpolation, float* grey, float* inside) {
+          Interpolation interpolation, float* grey, float* inside, const BentPoints& bent) {
   WarpRow w{};
   w.fx = static_cast<float>(camera.fx), w.fy = static_cast<float>(camera.fy);
   w.cx = static_cast<float>(camera.cx), w.cy = static_cast<float>(camera.cy);
@@ -88,14 +116,21 @@ void warp(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d
   w.u_max = static_cast<float>(level.image.cols) - 1.001F - w.border;
   w.v_max = static_cast<float>(level.image.rows) - 1.001F - w.border;
   w.columns = patch.width;
-  const Eigen::Vector3d per_column = G_plane_patch.col(0) * patch.step;
-  w.dq0 = static_cast<float>(per_column.x());
-  w.dq1 = static_cast<float>(per_column.y());
-  w.dq2 = static_cast<float>(per_column.z());
+  const bool is_bent = bent.x != nullptr;
+  const Eigen::Vector3f G_x = G_plane_patch.col(0).cast<float>() * (is_bent ? 1 : patch.step);
+  const Eigen::Vector3f G_y = G_plane_patch.col(1).cast<float>();
+  w.dq0 = G_x.x(), w.dq1 = G_x.y(), w.dq2 = G_x.z();
+  w.eq0 = G_y.x(), w.eq1 = G_y.y(), w.eq2 = G_y.z();
+  RowFunction* const rows[2][2] = {{warp_row_linear, warp_row_cubic}, {warp_bent_row_linear, warp_bent_row_cubic}};
+  RowFunction* const warp_row = rows[is_bent][is_cubic];
   for (int row = 0; row < patch.height; ++row) {
-    const Eigen::Vector3d q = G_plane_patch * Eigen::Vector3d(patch.x_of(0), patch.y_of(row), 1);
-    w.q0 = static_cast<float>(q.x()), w.q1 = static_cast<float>(q.y()), w.q2 = static_cast<float>(q.z());
-    (is_cubic ? warp_row_cubic : warp_row_linear)(w, grey + row * patch.width, inside + row * patch.width);
+    const int first = row * patch.width;
+    const Eigen::Vector3d start =
+        is_bent ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(patch.x_of(0), patch.y_of(row), 1);
+    const Eigen::Vector3f q = (G_plane_patch * start).cast<float>();
+    w.q0 = q.x(), w.q1 = q.y(), w.q2 = q.z();
+    if (is_bent) w.bent_x = bent.x + first, w.bent_y = bent.y + first;
+    warp_row(w, grey + first, inside + first);
   }
 }
 

@@ -25,18 +25,21 @@ struct Patch {
   float y_of(int row) const { return (static_cast<float>(row) - 0.5F * static_cast<float>(height - 1)) * step; }
 };
 
-/// Grey values above this are glare or clipping and say nothing about the tissue.
-inline constexpr float kSaturatedGrey = 240;
-
 enum class Interpolation {
   LINEAR,  ///< bilinear: fast, to come near
   CUBIC,   ///< Catmull-Rom: exact enough for a hundredth of a pixel
 };
 
-/// Samples the pyramid's level where `G_plane_patch` sends the grid. `inside` is 1 where the sample lies in
-/// the window, else 0. Both have patch.size() elements.
+/// Where the grid's points lie instead, in patch coordinates, for a patch that is bent, and by how much the gain is
+/// larger there: patch.size() of each.
+struct BentPoints {
+  const float *x = nullptr, *y = nullptr, *gain_offset = nullptr;
+};
+
+/// Samples the pyramid's level where `G_plane_patch` sends the grid, or the bent points where they are given. `inside`
+/// is 1 where the sample lies in the window, else 0. Both have patch.size() elements.
 void warp(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, const Patch& patch,
-          Interpolation interpolation, float* grey, float* inside);
+          Interpolation interpolation, float* grey, float* inside, const BentPoints& bent = {});
 
 /// A patch of width x height points at the given level, grey values from the picture under G_plane_patch.
 Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,

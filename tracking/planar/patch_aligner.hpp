@@ -11,9 +11,10 @@
 
 namespace heartservo::tracking {
 
+/// A column for each control point: its offset x, y in patch coordinates, and by how much the gain is larger there.
 /// Never on the heap: candidates are compared and copied in every frame.
 inline constexpr int kMaxBendPoints = 64;
-using BendField = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, kMaxBendPoints>;
+using BendField = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxBendPoints>;
 
 /// Where the template lies in a picture, and how well it fits there.
 struct Alignment {
@@ -25,14 +26,13 @@ struct Alignment {
   double visible = 0;          ///< share of the template's usable points that lie in the picture and fit (not occluded)
   double noise_grey = 0;       ///< robust standard deviation of the remaining difference
   int iterations = 0;
-  /// How the region is bent before the homography is applied, of aligners that bend it: 2 x n in patch coordinates; none
-  /// where the region is plane. It leaves the patch's centre and what is near it in place, so that G_plane_patch is the
-  /// homography there.
-  BendField bend{2, 0};
+  /// How the region is bent before the homography is applied, and lit, of aligners that bend it (spline_bend.hpp); none
+  /// where the region is plane. It leaves the patch's centre in place, and G_plane_patch is the homography there.
+  BendField bend{3, 0};
 };
 
 /// How much a region may change its shape in the picture.
-enum class MotionModel { AFFINE = 6, HOMOGRAPHY = 8 };  // the number of parameters of SL(3) in use
+enum class MotionModel { TRANSLATION = 2, AFFINE = 6, HOMOGRAPHY = 8 };  // the number of parameters of SL(3) in use
 
 class PatchAligner {
  public:
@@ -52,6 +52,10 @@ class PatchAligner {
   /// Where the point of the patch lies, in patch coordinates, once the region is bent by the alignment.
   virtual Eigen::Vector2d bent(const Alignment& /*alignment*/, const Eigen::Vector2d& patch_point) const {
     return patch_point;
+  }
+  /// The gain there.
+  virtual double gain_at(const Alignment& alignment, const Eigen::Vector2d& /*patch_point*/) const {
+    return alignment.gain;
   }
 
   /// False: align() ignores the MotionModel, so that asking again with another one finds nothing new.

@@ -18,11 +18,13 @@ namespace {
 constexpr double kSmallestSide = 12;        // px
 constexpr double kSmallestGradient = 1.5;   // grey/px, RMS in the direction with the least texture
 constexpr double kVisibleShare = 0.5;       // a template that fits on fewer points loses quality
+constexpr double kGlareMargin = 25;         // grey, above the brightest of the template
 constexpr double kSmallSurprise = 1.2;      // px between foreseen and found place that one level copes with
 constexpr double kSuddenFall = 0.06;        // of the quality, against the last frames
 constexpr double kLeap = 0.2;               // of the side: mean distance of the corners from where they were foreseen
 constexpr double kLikeBefore = 0.03;        // of the quality, between before a loss and after, with noise half again
 constexpr double kLargestGrowth = 1.6;      // of the area, between two frames
+constexpr double kLikelyShear = 1.3;        // anisotropy against the last frame
 constexpr double kLargestScale = 2.5;       // of the side, against the reference
 constexpr double kLikelyPerspective = 1.4;  // a 10 mm region 45 mm away, tilted by 60 degrees, has 1.21
 constexpr double kLikelyAnisotropy = 2;     // tilted by 60 degrees
@@ -37,6 +39,13 @@ Eigen::Matrix3d intrinsics(const Camera& c) {
   Eigen::Matrix3d K;
   K << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1;
   return K;
+}
+
+double brightest(const Patch& patch) {
+  float b = 0;
+  for (std::size_t i = 0; i < patch.size(); ++i)
+    if (patch.usable[i] > 0) b = std::max(b, patch.grey[i]);
+  return static_cast<double>(b);
 }
 
 }  // namespace
@@ -79,6 +88,7 @@ std::string PlanarTracker::start(const Frame& frame, const Quad& corners) {
   aligner_->learn(pyramid_, camera_, reference_.G_plane_patch, static_cast<int>(std::lround(side_x)),
                   static_cast<int>(std::lround(side_y)));
   if (std::string why = unfit_texture(); !why.empty()) return why;
+  brightest_ = brightest(aligner_->patch(0));
   last_ = reference_;
   aligner_->believe(last_);
   last_time_s_ = frame.time_s;
@@ -87,6 +97,11 @@ std::string PlanarTracker::start(const Frame& frame, const Quad& corners) {
   usual_quality_ = 1;
   started_ = locked_ = true;
   return "";
+}
+
+double PlanarTracker::glare_grey() const {
+  return started_ ? std::min<double>(kSaturatedGrey, (brightest_ - last_.bias) / last_.gain + kGlareMargin)
+                  : kSaturatedGrey;
 }
 
 std::string PlanarTracker::unfit_texture() const {
@@ -141,7 +156,8 @@ double PlanarTracker::quality_of(const Alignment& a, const Quad& expected) const
   const Eigen::Vector2d c = centre(corners);
   if (c.x() < 0 || c.y() < 0 || c.x() > width_ - 1 || c.y() > height_ - 1) return 0;
   return a.correlation * std::min(1.0, a.visible / kVisibleShare) *
-         std::min(1.0, kLikelyPerspective / view.perspective) * std::min(1.0, kLikelyAnisotropy / view.anisotropy);
+         std::min(1.0, kLikelyPerspective / view.perspective) * std::min(1.0, kLikelyAnisotropy / view.anisotropy) *
+         std::min(1.0, kLikelyShear / view_change(expected, corners).anisotropy);
 }
 
 PlanarTracker::Candidate PlanarTracker::try_from(const Alignment& start, int coarsest, const Quad& expected) {
@@ -194,7 +210,7 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
 }
 
 PlanarTracker::Candidate PlanarTracker::reacquire(const cv::Mat& grey) {
-  pyramid_.build(grey, cv::Rect(0, 0, grey.cols, grey.rows), options_.levels);
+  pyramid_.build(grey, cv::Rect(0, 0, grey.cols, grey.rows), options_.levels, glare_grey());
   aligner_->forget();
   return search(corners_of(last_.G_plane_patch), std::hypot(grey.cols, grey.rows), 6);
 }
@@ -235,7 +251,7 @@ void PlanarTracker::build_pyramid(const cv::Mat& grey, const Quad& a, const Quad
   const auto clip = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
   const cv::Point from(clip(left - margin), clip(top - margin)),
       to(clip(right + margin + 1), clip(bottom + margin + 1));
-  pyramid_.build(grey, cv::Rect(from, to), levels);
+  pyramid_.build(grey, cv::Rect(from, to), levels, glare_grey());
 }
 
 void PlanarTracker::believe(const Candidate& candidate, double time_s) {
@@ -304,10 +320,7 @@ Eigen::Vector2d PlanarTracker::carry(const Eigen::Vector2d& start_px) const {
 void PlanarTracker::mark_left_out(cv::Mat& mask) {
   if (mask.empty()) mask = cv::Mat::zeros(height_, width_, CV_8UC1);
   if (!started_ || !locked_ || mask.cols != width_ || mask.rows != height_) return;
-  const auto place = [this](const Eigen::Vector2d& patch_point) {
-    return pixel_of(last_.G_plane_patch, aligner_->bent(last_, patch_point));
-  };
-  tracking::mark_left_out(pyramid_.level(0), aligner_->patch(0), last_, place, mask);
+  tracking::mark_left_out(pyramid_.level(0), camera_, *aligner_, last_, mask);
 }
 
 }  // namespace heartservo::tracking

@@ -55,6 +55,7 @@ class PlanarTracker final : public TargetTracker {
     double quality = 0;
   };
 
+  double glare_grey() const;
   std::string unfit_texture() const;
   Eigen::Vector2d pixel_of(const Eigen::Matrix3d& G_plane_patch, const Eigen::Vector2d& patch_point) const;
   Quad corners_of(const Eigen::Matrix3d& G_plane_patch) const;
@@ -78,6 +79,7 @@ class PlanarTracker final : public TargetTracker {
   Alignment last_;            // last believed
   double last_time_s_ = 0;
   Eigen::Vector2d plane_velocity_ = Eigen::Vector2d::Zero();  // of the centre, plane units per s
+  double brightest_ = 255;                                    // of the template, grey
   double surprise_px_ = 0;    // how far the last frame's place was from the foreseen one
   double usual_quality_ = 1;  // of the last frames
   bool started_ = false, locked_ = false;

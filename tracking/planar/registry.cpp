@@ -2,6 +2,7 @@
 
 #include "tracking/planar/composite_aligner.hpp"
 #include "tracking/planar/correlation_aligner.hpp"
+#include "tracking/planar/deformable_aligner.hpp"
 #include "tracking/planar/esm_aligner.hpp"
 #include "tracking/planar/optical_flow_aligner.hpp"
 #include "tracking/planar/ssd_aligner.hpp"
@@ -37,6 +38,12 @@ std::unique_ptr<TargetTracker> make_optical_flow(const Camera& camera, const Tra
   return std::make_unique<PlanarTracker>(make_optical_flow_aligner({}), camera, options);
 }
 
+std::unique_ptr<TargetTracker> make_deformable(const Camera& camera, const TrackerOptions& options) {
+  DeformableOptions deformable;
+  deformable.max_iterations = options.max_iterations;
+  return std::make_unique<PlanarTracker>(make_deformable_aligner(deformable), camera, options);
+}
+
 // ViSP's trackers see pixels only, so no camera: under a lens they follow a homography of the distorted picture.
 template <VispMethod method>
 std::unique_ptr<TargetTracker> make_visp(const Camera&, const TrackerOptions& options) {
@@ -50,6 +57,7 @@ const Registry<TargetTracker, const Camera&, const TrackerOptions&>& trackers() 
       "tracker",
       {{"esm", "homography by efficient second-order minimisation, gain and bias, robust", make_esm},
        {"composite", "candidates by squared differences and texture, then the homography as esm", make_composite},
+       {"deformable", "as esm, then a smooth bending of the region by splines", make_deformable},
        {"ssd", "homography by Gauss-Newton on the squared differences, no gain, not robust", make_ssd},
        {"correlation", "translation by zero-mean normalised correlation, exhaustive", make_correlation},
        {"optical_flow", "homography from pyramidal Lucas-Kanade, chained from frame to frame", make_optical_flow},

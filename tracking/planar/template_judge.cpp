@@ -69,11 +69,11 @@ void TemplateJudge::judge(const ImagePyramid& picture, Alignment& a) {
   if (!(sample(picture, a.G_plane_patch) >= kSmallestShare * usable)) return;
   for (int round = 0; round < kRounds; ++round) {
     if (!fit_illumination(patches_.front(), buffers_, a.gain, a.bias)) return;
-    const AlignmentPass pass = esm_pass(patches_.front(), a.gain, a.bias, buffers_);
+    const AlignmentPass pass = esm_pass(patches_.front(), {a.gain, a.bias}, buffers_);
     a.noise_grey = pass.noise_grey;
     a.visible = usable > 0 ? pass.weight / usable : 0;
   }
-  const Correlation c = correlation(patches_.front(), buffers_);
+  const Correlation c = correlation(patches_.front(), {a.gain, a.bias}, buffers_);
   a.correlation = c.believed;
   a.correlation_all = c.all;
   a.converged = true;
@@ -81,7 +81,7 @@ void TemplateJudge::judge(const ImagePyramid& picture, Alignment& a) {
 
 double TemplateJudge::correlation_at(const ImagePyramid& picture, const Eigen::Matrix3d& G) {
   if (!G.allFinite() || !(sample(picture, G) >= kSmallestShare * usable_.front())) return 0;
-  return correlation(patches_.front(), buffers_).believed;
+  return correlation(patches_.front(), {}, buffers_).believed;
 }
 
 }  // namespace heartservo::tracking

@@ -9,8 +9,23 @@ namespace {
 
 constexpr double kSmallestCorrelation = 0.3;
 
+float usable_mean(const Patch& patch) {
+  double sum = 0, n = 1e-9;
+  for (std::size_t i = 0; i < patch.size(); ++i)
+    if (patch.usable[i] > 0) sum += static_cast<double>(patch.grey[i]), ++n;
+  return static_cast<float>(sum / n);
+}
+
+// Glare speaks neither for nor against a place.
+cv::Mat without_glare(const cv::Mat& picture, float mean) {
+  cv::Mat clear = picture.clone();
+  clear.setTo(mean, picture >= kSaturatedGrey);
+  return clear;
+}
+
 // The template as it looks in the picture's axes under `corners`, at the level's scale; a rectangle cut from it.
-cv::Mat draw_template(const Patch& patch, const Quad& corners, float scale, Eigen::Vector2d& centre_offset) {
+cv::Mat draw_template(const Patch& patch, float mean, const Quad& corners, float scale,
+                      Eigen::Vector2d& centre_offset) {
   double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
   for (const auto& c : corners) {
     left = std::min(left, c.x()), right = std::max(right, c.x());
@@ -23,7 +38,9 @@ cv::Mat draw_template(const Patch& patch, const Quad& corners, float scale, Eige
   Quad to;
   for (std::size_t i = 0; i < 4; ++i) to[i] = (corners[i] - Eigen::Vector2d(left, top)) * s;
   const Eigen::Matrix3d H = homography_between(rectangle(0, 0, patch.width - 1, patch.height - 1), to);
-  const cv::Mat grey(patch.height, patch.width, CV_32FC1, const_cast<float*>(patch.grey.data()));
+  cv::Mat grey(patch.height, patch.width, CV_32FC1);
+  for (std::size_t i = 0; i < patch.size(); ++i)
+    grey.ptr<float>()[i] = patch.grey[i] < kSaturatedGrey ? patch.grey[i] : mean;
   const cv::Matx33d H_cv(H(0, 0), H(0, 1), H(0, 2), H(1, 0), H(1, 1), H(1, 2), H(2, 0), H(2, 1), H(2, 2));
   cv::Mat drawn;
   cv::warpPerspective(grey, drawn, H_cv, size, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
@@ -43,10 +60,11 @@ std::vector<Eigen::Vector2d> find_template(const Patch& patch, const Quad& corne
                                            const Eigen::Vector2d& around, double radius_px, int count) {
   std::vector<Eigen::Vector2d> places;
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();
-  const cv::Mat drawn = is_convex(corners) ? draw_template(patch, corners, picture.scale, offset) : cv::Mat();
+  const float mean = usable_mean(patch);
+  const cv::Mat drawn = is_convex(corners) ? draw_template(patch, mean, corners, picture.scale, offset) : cv::Mat();
   if (drawn.empty() || drawn.cols > picture.image.cols || drawn.rows > picture.image.rows) return places;
   cv::Mat score;
-  cv::matchTemplate(picture.image, drawn, score, cv::TM_CCOEFF_NORMED);
+  cv::matchTemplate(without_glare(picture.image, mean), drawn, score, cv::TM_CCOEFF_NORMED);
   const Eigen::Vector2d origin(picture.u0, picture.v0);
   const double s = static_cast<double>(picture.scale);
   for (int row = 0; row < score.rows; ++row)

@@ -74,6 +74,7 @@ class DocumentedCommands : public CommandLine {
     if (std::regex_search(line, placeholder)) return "has a placeholder";
     std::istringstream words(line);
     std::string word, before, command;
+    bool before_out = false;
     words >> word >> command;
     if (command == "paper" || command == "sweep") return "takes too long for a unit test";
     for (; words >> word; before = word) {
@@ -83,6 +84,8 @@ class DocumentedCommands : public CommandLine {
       const bool is_path = word.find('/') != std::string::npos || fs::path(word).extension().string().size() > 3;
       const bool is_number = word.find_first_not_of("0123456789.,-+e") == std::string::npos;
       if (is_number || !is_path || word.find('*') != std::string::npos || word.find('%') != std::string::npos) continue;
+      if (before_out) continue;
+      before_out = line.rfind("heartservo camera convert ", 0) == 0;  // its second file is written
       if (!fs::exists(project_ / word)) return word + " is not here";
       if (fs::path(word).extension() != ".yaml" ||
           !fs::path(word).parent_path().filename().string().starts_with("scenes"))
@@ -136,7 +139,7 @@ TEST_F(DocumentedCommands, OfTheDocumentationWork) {
 }
 
 TEST_F(DocumentedCommands, OfTheHelpWork) {
-  for (const std::string command : {"", "servo", "track", "render", "scene"}) {
+  for (const std::string command : {"", "servo", "track", "render", "scene", "calibrate", "camera"}) {
     const auto lines = help_lines(
         command,
         run(command.empty() ? std::vector<std::string>{"--help"} : std::vector<std::string>{command, "--help"}).out);

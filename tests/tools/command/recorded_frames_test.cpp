@@ -1,4 +1,6 @@
 // Frames from disk, whole and broken, and regions that cannot be followed.
+#include <opencv2/imgproc.hpp>
+
 #include "tests/tools/command/command_fixture.hpp"
 
 namespace heartservo::test {
@@ -72,6 +74,22 @@ TEST_F(RecordedFrames, APictureOfAnotherSizeIsOneLostFrame) {
   expect_lost(source, 1, 9);
 }
 
+TEST_F(RecordedFrames, APictureOfAnotherTypeIsReadAsGrey) {
+  const std::string source = sequence("frames", 9);
+  cv::Mat deep, colour;
+  waves(2.5).convertTo(deep, CV_16U, 257);
+  cv::imwrite(picture(source, 5), deep);
+  cv::cvtColor(waves(3), colour, cv::COLOR_GRAY2BGR);
+  cv::imwrite(picture(source, 6), colour);
+  expect_lost(source, 0, 9);
+}
+
+TEST_F(RecordedFrames, ATextAmongPicturesIsOneLostFrame) {
+  const std::string source = sequence("frames", 9);
+  write_text(picture(source, 5), "this is no picture\n");
+  expect_lost(source, 1, 9);
+}
+
 TEST_F(RecordedFrames, ABrokenFirstPictureIsUnreadableInput) {
   const std::string source = sequence("frames", 3);
   write_text(picture(source, 0), read_text(picture(source, 0)).substr(0, 200));
@@ -92,7 +110,17 @@ TEST_F(RecordedFrames, RegionsThatCannotBeFollowedAreRefusedWithTheReason) {
   fs::create_directories(folder_ / "flat");
   for (int i = 0; i < 3; ++i) cv::imwrite(picture("flat", i), cv::Mat(120, 160, CV_8UC1, cv::Scalar(90)));
   expect_region_refused("flat", "50,30,40,40", "too little texture");
+  // an edge that can slide along itself
+  fs::create_directories(folder_ / "stripes");
+  cv::Mat stripes(120, 160, CV_8UC1);
+  for (int u = 0; u < stripes.cols; ++u) stripes.col(u).setTo(128 + 60 * std::sin(u / 4.0));
+  for (int i = 0; i < 3; ++i) cv::imwrite(picture("stripes", i), stripes);
+  expect_region_refused("stripes", "50,30,40,40", "condition number");
   expect_refused(2, {"track", source, "--corners", "50,30,50,70,90,70,90,30"}, {"clockwise"});
+  expect_refused(2, {"track", source, "--corners", "50,30,90,30,90,nan,50,70"}, {"--corners", "'nan'"});
+  expect_refused(2, {"track", source, "--corners", "50,30,90,30,70,40,50,70"}, {"clockwise"});
+  expect_refused(2, {"track", source, "--corners", "50,30,58,30,58,70,50,70"}, {"smaller than 12 px"});
+  expect_refused(2, {"track", source, "--corners", "50,30,170,30,170,70,50,70"}, {"outside the picture"});
   expect_refused(2, {"track", source, "--square-mm", "5"}, {"--camera"});
   expect_refused(2, {"servo", scene("pig_2007"), "--roi", "50,30,40,40"}, {"--roi"});
 }

@@ -98,9 +98,49 @@ TEST_F(RunFolderContract, Track) {
   EXPECT_EQ(j["command"], "track");
   EXPECT_EQ(j["frames"], std::stoi(count));
   expect_texts(j, {"/source", "/trackers/0/name"});
-  expect_numbers(j, {"/trackers/0/lost_frames", "/trackers/0/uncertain_frames", "/trackers/0/error_px/mean",
-                     "/trackers/0/error_px/std", "/trackers/0/error_px/max", "/trackers/0/ms/p50", "/trackers/0/ms/p99",
-                     "/trackers/0/displacement_px/x/rms"});
+  expect_numbers(
+      j, {"/trackers/0/lost_frames", "/trackers/0/uncertain_frames", "/trackers/0/error_px/mean",
+          "/trackers/0/error_px/std", "/trackers/0/error_px/max", "/trackers/0/ms/p50", "/trackers/0/ms/p99",
+          "/trackers/0/displacement_px/x/rms", "/trackers/0/wrong_ok_frames", "/trackers/0/wrong_over_px/corners",
+          "/trackers/0/wrong_over_px/point", "/trackers/0/score_lost_frames", "/trackers/0/relocks"});
+  EXPECT_EQ(j["reference"], "truth");
+  EXPECT_EQ(j["point"], "target");
+  const json& point = j["trackers"][0]["point_error_px"];
+  EXPECT_EQ(point["name"], "target");
+  EXPECT_EQ(point["frames"], std::stoi(count));
+  for (const char* key : {"median", "p95", "mean", "std", "max"}) EXPECT_LT(point[key], 0.2) << key;
+  EXPECT_TRUE(j["trackers"][0]["first_failure"].is_null());
+  EXPECT_FALSE(j.contains("paper"));
+  const std::string csv = read_text(folder_ / "run/frames.csv");
+  for (const char* column : {"target/u_px", "displacement/v_px", "error_px", "truth/corner3/v_px", "truth/point/u_px",
+                             "point/error_px", "pose/qw", "measured/z_m"})
+    EXPECT_NE(csv.substr(0, csv.find('\n')).find(std::string(",") + column), std::string::npos) << column;
+}
+
+TEST_F(RunFolderContract, TrackOfThePapersSequences) {
+  const std::vector<std::string> table5{"track", "--artificial", "table5", "--tracker", "esm,ssd", "--frames", "25"};
+  auto line = table5;
+  line.insert(line.end(), {"--json", "--out", "run"});
+  const Outcome o = run(line);
+  ASSERT_EQ(o.code, 0) << o.err;
+  const json j = json_of(o);
+  ASSERT_EQ(j["paper"].size(), 1u);
+  EXPECT_EQ(j["paper"][0]["what"], "table 5");
+  ASSERT_EQ(j["paper"][0]["rows"].size(), 5u);
+  const json& ssd = j["paper"][0]["rows"][1];
+  EXPECT_EQ(ssd["tracker"], "ssd");
+  EXPECT_EQ(ssd["paper_px"]["std"], 0.19);
+  EXPECT_EQ(ssd["here_px"], j["trackers"][1]["error_px"]);
+  EXPECT_TRUE(j["paper"][0]["rows"][2]["here_px"].is_null()) << "optical_flow was not asked for";
+  EXPECT_NE(read_text(folder_ / "run/report.html").find("Table 5 of the paper"), std::string::npos);
+  EXPECT_LE(j["trackers"][0]["error_px"]["mean"], 0.02) << "the goal for esm";
+  EXPECT_LE(j["trackers"][0]["error_px"]["std"], 0.03);
+  const Outcome text = run(table5);
+  for (const char* part : {"Table 5 of the paper", "paper mean", "Optical flow", "0.73", "Ours differ because"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << part << "\n" << text.out;
+  const Outcome circle = run({"track", "--artificial", "circle", "--speculars", "20", "--frames", "25"});
+  for (const char* part : {"Fig. 7 of the paper", "loses the pattern", "not run", "20 moving speculars"})
+    EXPECT_NE(circle.out.find(part), std::string::npos) << part << "\n" << circle.out;
 }
 
 TEST_F(RunFolderContract, Render) {

@@ -25,13 +25,11 @@ struct Nature {
   bool follows_views = true;  // false: translation only, by nature; it must diverge and say so
 };
 const std::map<std::string, Nature> kNatures = {
-    {"esm", {0.02, 0.03}},
-    {"composite", {0.02, 0.03}},
-    {"ssd", {0.02, 0.03}},
+    {"esm", {0.02, 0.03}},        {"composite", {0.02, 0.03}},
+    {"deformable", {0.07, 0.1}},  {"ssd", {0.02, 0.03}},
     {"correlation", {0.03, 0, false}},
     {"optical_flow", {0.3, 0.4}},  // chained: the errors of all frames add up
-    {"visp_esm", {0.03, 0.04}},
-    {"visp_ic", {0.03, 0.04}},
+    {"visp_esm", {0.03, 0.04}},   {"visp_ic", {0.03, 0.04}},
     {"visp_zncc", {0.04, 0.5}},  // damped as ViSP comes: perspective lags behind
     {"visp_mi", {0.7, 0.8}},     // a histogram of 8 grey levels has a blunt peak
 };
