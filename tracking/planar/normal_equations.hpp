@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "tracking/planar/light.hpp"
 #include "tracking/planar/patch.hpp"
 
 namespace heartservo::tracking {
@@ -29,12 +30,6 @@ struct AlignmentPass {
   double noise_grey = 0;  ///< 1.4826 * median |residual|
   double points = 0;      ///< usable points inside the picture
   double weight = 0;      ///< sum of their robust weights
-};
-
-/// template = (gain + gain_offset) * picture + bias
-struct Light {
-  double gain = 1, bias = 0;
-  const float* gain_offset = nullptr;  ///< of every point of the patch, or null
 };
 
 /// residual = gain * buffers.grey + bias - template, on usable points; Tukey weights scaled by the median absolute

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tracking/camera/camera.hpp"
+#include "tracking/planar/light.hpp"
 #include "tracking/planar/patch.hpp"
 #include "tracking/planar/search_picture.hpp"
 
@@ -38,11 +39,6 @@ struct WindowTemplate {
 /// view's middle. `mean`: WindowTemplate::mean.
 void look(const SearchPicture& picture, int level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch,
           Interpolation interpolation, float mean, UprightView& view);
-
-/// template grey = gain * picture grey + bias
-struct Light {
-  double gain = 1, bias = 0;
-};
 
 struct WindowFit {
   double d = 1;  ///< in [0, 1]
