@@ -39,10 +39,10 @@ void ImagePyramid::build(const cv::Mat& grey, const cv::Rect& window, int levels
 bool ImagePyramid::halve_around_glare(const cv::Mat& grey, double glare_grey) {
   cv::compare(grey, cv::Scalar(glare_grey), glare_, cv::CMP_GE);
   if (cv::countNonZero(glare_) == 0) return false;
+  levels_[0].image.setTo(255, glare_);
   cv::dilate(glare_, glare_, cv::Mat(), cv::Point(-1, -1), kHalo);
   glare_.convertTo(clear_[0], CV_32F, -1.0 / 255, 1);
   cv::multiply(levels_[0].image, clear_[0], clear_grey_[0]);
-  levels_[0].image.setTo(255, glare_);
   for (std::size_t i = 1; i < static_cast<std::size_t>(count_); ++i) {
     const std::size_t from = (i + 1) % 2, to = i % 2;  // two buffers in turn: pyrDown must not work in place
     cv::pyrDown(clear_[from], clear_[to]);
