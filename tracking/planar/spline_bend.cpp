@@ -43,8 +43,13 @@ double SplineBend::gain_offset(const BendField& field, const Eigen::Vector2d& at
 }
 
 Eigen::Matrix3d SplineBend::split_homography(BendField& field) const {
+  if (field.cols() == 0) return Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d H = split_once(field);
+  return H * split_once(field);  // the first fit has the perspective in the axes before the affine map
+}
+
+Eigen::Matrix3d SplineBend::split_once(BendField& field) const {
   Eigen::Matrix3d H = Eigen::Matrix3d::Identity();
-  if (field.cols() == 0) return H;
   const Eigen::Vector2d shift = offset(field, Eigen::Vector2d::Zero());
   // Control points of D x - (p . x) x, unknown D (2 x 2, by rows) and p. Those of x^2 are x_k^2 - cell^2 / 4.
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();

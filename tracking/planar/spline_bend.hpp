@@ -58,6 +58,7 @@ class SplineBend {
 
  private:
   static Basis basis(double x, double half, int cells);
+  Eigen::Matrix3d split_once(BendField& field) const;
 
   double half_x_ = 1, half_y_ = 1;
   int cells_x_ = 1, cells_y_ = 1;
