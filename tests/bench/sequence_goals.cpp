@@ -1,6 +1,7 @@
 // heartservo_sequence_goals: trackers over the artificial sequences at sides of 40, 80 and 120 px, two textures and
 // three places, against exact truth. Prints one row per tracker, sequence and side over the (textures x places) runs:
 //
+//   refused runs in whose region the tracker finds too little texture to start; the others count below
 //   kept    runs not lost; lost: LOST or over 5 px off in the last frame
 //   px      mean corner error over the frames of the kept runs that are not LOST; max: the largest
 //   target  mean error of the region's centre (Track::target)
@@ -35,11 +36,12 @@ struct Choice {
       textures{"detail", "retina"};
   std::vector<int> sides{40, 80, 120}, places{0, 1, 2};
   std::vector<int> seeds{1};
+  tracking::TrackerOptions options;
   bool verbose = false;
 };
 
 struct Cell {
-  int runs = 0, kept = 0;
+  int runs = 0, kept = 0, refused = 0;
   std::size_t lost_frames = 0, wrong_ok = 0;
   double floor_px = 0;
   std::vector<double> errors_px, target_px, ms;
@@ -49,7 +51,7 @@ struct Cell {
 struct Run {
   std::vector<double> errors_px, target_px, ms;
   std::size_t lost_frames = 0, wrong_ok = 0;
-  bool kept = false;
+  bool kept = false, refused = false;
   double max_px = 0;
 };
 
@@ -63,13 +65,13 @@ double corner_error(const tracking::Quad& a, const tracking::Quad& b) {
   return error;
 }
 
-Run run(const std::string& tracker_name, const std::vector<tracking::Frame>& frames,
-        const sim::ArtificialSequence& truth) {
-  const auto tracker = tracking::trackers().make(tracker_name, tracking::Camera{}, tracking::TrackerOptions{});
+Run run(const std::string& tracker_name, const tracking::TrackerOptions& options,
+        const std::vector<tracking::Frame>& frames, const sim::ArtificialSequence& truth) {
+  const auto tracker = tracking::trackers().make(tracker_name, tracking::Camera{}, options);
   Run result;
   if (const std::string why = tracker->start(frames[0], truth.region()); !why.empty()) {
     fmt::print(stderr, "{} refuses {}: {}\n", tracker_name, truth.description(), why);
-    result.lost_frames = frames.size() - 1;
+    result.refused = true;
     return result;
   }
   for (std::size_t k = 1; k < frames.size(); ++k) {
@@ -115,12 +117,14 @@ void run_place(const Choice& o, sim::SequenceOptions options, const std::shared_
     }
     const double floor_px = floor_of(options, base);
     for (const auto& name : o.trackers) {
-      const Run r = run(name, frames, sequence);
+      const Run r = run(name, o.options, frames, sequence);
       if (o.verbose)
         fmt::print(stderr, "{:<12} {:<70} {} error {:.3f} max {:.2f} floor {:.3f} lost {} wrong {}\n", name,
                    sequence.description(), r.kept ? "kept" : "LOST", servo::spread_of(r.errors_px).mean, r.max_px,
                    floor_px, r.lost_frames, r.wrong_ok);
       Cell& cell = cells[{name, side}];
+      cell.refused += r.refused;
+      if (r.refused) continue;
       ++cell.runs;
       cell.lost_frames += r.lost_frames;
       cell.wrong_ok += r.wrong_ok;
@@ -136,8 +140,8 @@ void run_place(const Choice& o, sim::SequenceOptions options, const std::shared_
 }
 
 void sweep(const Choice& o) {
-  fmt::print("{:<14}{:<8}{:>5}{:>8}{:>9}{:>9}{:>9}{:>9}{:>7}{:>7}{:>9}{:>9}\n", "tracker", "seq", "side", "kept", "px",
-             "floor", "max", "target", "lost", "wrong", "ms p50", "ms p99");
+  fmt::print("{:<14}{:<8}{:>5}{:>9}{:>8}{:>9}{:>9}{:>9}{:>9}{:>7}{:>7}{:>9}{:>9}\n", "tracker", "seq", "side",
+             "refused", "kept", "px", "floor", "max", "target", "lost", "wrong", "ms p50", "ms p99");
   std::map<std::pair<std::string, int>, std::shared_ptr<const sim::BasePicture>> bases;
   for (const auto& name : o.sequences) {
     std::map<std::pair<std::string, int>, Cell> cells;
@@ -158,7 +162,7 @@ void sweep(const Choice& o) {
         const Cell& c = cells[{tracker, side}];
         const std::string error = c.kept ? fmt::format("{:.4f}", servo::spread_of(c.errors_px).mean) : "-";
         fmt::print("{:<14}{:<8}{:>5}{:>8}{:>9}{:>9.4f}{:>9.3f}{:>9.4f}{:>7}{:>7}{:>9.3f}{:>9.3f}\n", tracker, name,
-                   side, fmt::format("{}/{}", c.kept, c.runs), error, c.floor_px / c.runs, c.max_px,
+                   side, fmt::format("{}/{}", c.kept, c.runs), error, c.floor_px / std::max(1, c.runs), c.max_px,
                    servo::spread_of(c.target_px).mean, c.lost_frames, c.wrong_ok, servo::percentile(c.ms, 50),
                    servo::percentile(c.ms, 99));
       }
@@ -181,6 +185,10 @@ int main(int argc, char** argv) {
   app.add_option("--sides", o.sides, "px")->delimiter(',')->capture_default_str();
   app.add_option("--places", o.places, "of 0, 1, 2")->delimiter(',')->capture_default_str();
   app.add_option("--seeds", o.seeds, "each one more set of runs")->delimiter(',')->capture_default_str();
+  app.add_option("--weighting", o.options.composite.weighting, "of composite: fixed, eq13, eq14")
+      ->capture_default_str();
+  app.add_option("--texture-weight", o.options.composite.texture_weight, "of composite, where it is fixed")
+      ->capture_default_str();
   app.add_flag("--verbose", o.verbose, "a line per run on stderr");
   CLI11_PARSE(app, argc, argv);
   try {

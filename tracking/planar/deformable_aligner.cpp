@@ -11,6 +11,7 @@ namespace heartservo::tracking {
 
 namespace {
 
+constexpr double kWorthBending = 0.4;   // correlation of the homography; below it is another place
 constexpr double kSmallestShare = 0.3;  // of the template's points must be in the picture
 
 class DeformableAligner final : public PatchAligner {
@@ -52,7 +53,7 @@ class DeformableAligner final : public PatchAligner {
 
   Alignment align(const ImagePyramid& picture, const Alignment& start, int coarsest, MotionModel) override {
     Alignment a = homography_->align(picture, start, coarsest, MotionModel::AFFINE);
-    if (!a.converged) return a;
+    if (!a.converged || a.correlation < kWorthBending) return a;
     if (a.bend.cols() == 0) a.bend.setZero(3, points());
     a.converged = bend(picture.level(0), start, a);
     return a;
@@ -84,11 +85,12 @@ class DeformableAligner final : public PatchAligner {
       const Eigen::Map<const Eigen::Matrix3Xd> moves(step_.data(), 3, points());
       a.bend -= moves;
       a.bias -= step_(3 * points());
-      // the mean gain goes where every aligner has it
-      const double mean = a.bend.row(2).mean();
+      // the mean gain goes where every aligner has it; what it may not do to the mean grey, the bias has to
+      const double mean = a.bend.row(2).mean(), wanted_gain = a.gain + mean;
       a.bend.row(2).array() -= mean;
       a.gain =
-          std::clamp(a.gain + mean, start.gain / (1 + options_.gain_change), start.gain * (1 + options_.gain_change));
+          std::clamp(wanted_gain, start.gain / (1 + options_.gain_change), start.gain * (1 + options_.gain_change));
+      a.bias += (wanted_gain - a.gain) * mean_grey();
       if (moves.topRows<2>().cwiseAbs().maxCoeff() * half_side_px_ < options_.step_px) break;
     }
     a.G_plane_patch = to_sl3(a.G_plane_patch * grid_->spline().split_homography(a.bend));
@@ -116,6 +118,14 @@ class DeformableAligner final : public PatchAligner {
         equations_.JtJ(3 * i + part, 3 * i + part) += weight;
         equations_.Jtr(3 * i + part) += weight * (a.bend(part, i) - before_(part, i));
       }
+  }
+
+  // Weighted mean of the picture's grey values: the splines of the gain add up to 1 everywhere.
+  double mean_grey() const {
+    const int bias = 3 * points();
+    double sum = 0;
+    for (int i = 0; i < points(); ++i) sum += equations_.JtJ(bias, 3 * i + 2);
+    return equations_.JtJ(bias, bias) > 0 ? sum / equations_.JtJ(bias, bias) : 0;
   }
 
   void add_difference(const SplineBend::Difference& d, int part, double weight, double value) {

@@ -84,8 +84,11 @@ class EsmAligner final : public PatchAligner {
       moved_ += step;
       const Eigen::Matrix3d M = sl3_exp(step.head<8>());
       a.G_plane_patch = to_sl3(a.G_plane_patch * M);
-      a.gain = std::clamp(a.gain + step[8], start_gain_ / (1 + options_.gain_change),
-                          start_gain_ * (1 + options_.gain_change));
+      const double most = start_gain_ * (1 + options_.gain_change), least = start_gain_ / (1 + options_.gain_change);
+      const double wanted_gain = a.gain + step[8];
+      a.gain = std::clamp(wanted_gain, least, most);
+      // what the gain may not do to the mean grey of the region, the bias has to
+      if (pass.JtJ(9, 9) > 0) a.bias += (wanted_gain - a.gain) * pass.JtJ(8, 9) / pass.JtJ(9, 9);
       a.bias += step[9];
       if (!a.G_plane_patch.allFinite() || !(a.gain > 0.05 && a.gain < 20)) return false;
       const bool last = corner_step(M) * half_side_px_ < step_px || i + 1 == iterations;

@@ -8,6 +8,7 @@
 
 #include "tracking/frames/frame.hpp"
 #include "tracking/planar/left_out.hpp"
+#include "tracking/planar/noise_of.hpp"
 #include "tracking/planar/sl3.hpp"
 #include "tracking/planar/template_search.hpp"
 
@@ -16,7 +17,7 @@ namespace heartservo::tracking {
 namespace {
 
 constexpr double kSmallestSide = 12;        // px
-constexpr double kSmallestGradient = 1.5;   // grey/px, RMS in the direction with the least texture
+constexpr double kSmallestGradient = 1.3;   // grey/px, RMS in the direction with the least texture
 constexpr double kVisibleShare = 0.5;       // a template that fits on fewer points loses quality
 constexpr double kGlareMargin = 25;         // grey, above the brightest of the template
 constexpr double kSmallSurprise = 1.2;      // px between foreseen and found place that one level copes with
@@ -28,6 +29,16 @@ constexpr double kLikelyShear = 1.3;        // anisotropy against the last frame
 constexpr double kLargestScale = 2.5;       // of the side, against the reference
 constexpr double kLikelyPerspective = 1.4;  // a 10 mm region 45 mm away, tilted by 60 degrees, has 1.21
 constexpr double kLikelyAnisotropy = 2;     // tilted by 60 degrees
+
+constexpr std::array<double, 4> kSearchTurns_rad{-0.26, 0.26, -0.52, 0.52};
+
+Eigen::Matrix3d rotation(double angle_rad) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  R(0, 0) = R(1, 1) = std::cos(angle_rad);
+  R(1, 0) = std::sin(angle_rad);
+  R(0, 1) = -R(1, 0);
+  return R;
+}
 
 double mean_distance(const Quad& a, const Quad& b) {
   double sum = 0;
@@ -114,15 +125,16 @@ std::string PlanarTracker::unfit_texture() const {
     n += static_cast<double>(patch.usable[i]);
   }
   if (n < 0.3 * static_cast<double>(patch.size())) return "the region is mostly saturated or outside the picture";
-  const double step = static_cast<double>(patch.step);
+  // noise has a gradient, too: half its variance, along both axes
+  const double step = static_cast<double>(patch.step), noise = noise_of(patch);
   const Eigen::Vector2d eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(sum / n).eigenvalues() * step * step;
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(sum / n).eigenvalues().array() * step * step - noise * noise / 2;
   const double weakest = std::sqrt(std::max(0.0, eigenvalues[0]));
   if (weakest < kSmallestGradient)
     return fmt::format(
-        "the region has too little texture: RMS gradient {:.2f} grey/px in its weakest direction, {} needed, "
-        "condition number {:.0f}",
-        weakest, kSmallestGradient, eigenvalues[1] / std::max(eigenvalues[0], 1e-12));
+        "the region has too little texture: RMS gradient {:.2f} grey/px in its weakest direction without the noise of "
+        "{:.1f} grey, {} needed, condition number {:.0f}",
+        weakest, noise, kSmallestGradient, std::max(eigenvalues[1], 0.0) / std::max(eigenvalues[0], 1e-12));
   return "";
 }
 
@@ -202,7 +214,7 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
   }
   if (best.quality < wanted) {
     build_pyramid(frame.grey, last, last, options_.search_px + 0.35 * side_px_, options_.levels);
-    keep(search(last, options_.search_px, 3));
+    keep(search(last, options_.search_px, 3, false));
   }
   surprise_px_ =
       best.quality > 0 ? (centre(corners_of(best.alignment.G_plane_patch)) - centre(expected)).norm() : INFINITY;
@@ -212,29 +224,49 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
 PlanarTracker::Candidate PlanarTracker::reacquire(const cv::Mat& grey) {
   pyramid_.build(grey, cv::Rect(0, 0, grey.cols, grey.rows), options_.levels, glare_grey());
   aligner_->forget();
-  return search(corners_of(last_.G_plane_patch), std::hypot(grey.cols, grey.rows), 6);
+  return search(corners_of(last_.G_plane_patch), std::hypot(grey.cols, grey.rows), 6, true);
 }
 
-// Correlates the template, as the last believed alignment shows it, with a coarse level of the pyramid and aligns from
-// the best places.
-PlanarTracker::Candidate PlanarTracker::search(const Quad& around, double radius_px, int candidates) {
-  Candidate best;
+// Correlates the template, as the last believed alignment and the reference show it, with a coarse level of the pyramid
+// and aligns from the best places. After a loss it may have turned meanwhile.
+PlanarTracker::Candidate PlanarTracker::search(const Quad& around, double radius_px, int candidates, bool turned) {
   const int level = search_level(side_px_, pyramid_.levels());
-  for (const Alignment* view : {&last_, &reference_}) {
-    const Quad corners = corners_of(view->G_plane_patch);
+  struct Start {
+    Alignment alignment;
+    Quad expected;
+    double correlation = 0;
+  };
+  std::vector<Start> starts;
+  const auto look_for = [&](const Alignment& view) {
+    const Quad corners = corners_of(view.G_plane_patch);
     const auto places =
         find_template(aligner_->patch(level), corners, pyramid_.level(level), centre(around), radius_px, candidates);
     for (const auto& place : places) {
-      Alignment start = *view;
-      const Eigen::Vector2d from = camera_.normalise(centre(corners)), to = camera_.normalise(place);
+      const Eigen::Vector2d from = camera_.normalise(centre(corners)), to = camera_.normalise(place.centre);
       if (!from.allFinite() || !to.allFinite()) continue;
-      start.G_plane_patch = shifted(view->G_plane_patch, to - from);
-      start.gain = last_.gain;
-      start.bias = last_.bias;
-      const Candidate c = try_from(start, level, corners);
-      if (c.quality > best.quality) best = c;
+      Start start{view, corners, place.correlation};
+      start.alignment.G_plane_patch = shifted(view.G_plane_patch, to - from);
+      start.alignment.gain = last_.gain;
+      start.alignment.bias = last_.bias;
+      starts.push_back(start);
     }
+  };
+  look_for(last_);
+  look_for(reference_);
+  for (int i = 0; turned && i < 4; ++i) {
+    Alignment view = reference_;
+    view.G_plane_patch *= rotation(kSearchTurns_rad[static_cast<std::size_t>(i)]);
+    look_for(view);
   }
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Start& a, const Start& b) { return a.correlation > b.correlation; });
+  if (starts.size() > 2 * static_cast<std::size_t>(candidates)) starts.resize(2 * static_cast<std::size_t>(candidates));
+  Candidate best;
+  for (const Start& start : starts)
+    if (const Candidate c = try_from(start.alignment, level, start.expected); c.quality > best.quality) {
+      best = c;
+      if (best.quality >= std::max(options_.ok_quality, usual_quality_ - kSuddenFall)) break;
+    }
   return best;
 }
 
@@ -259,9 +291,9 @@ void PlanarTracker::believe(const Candidate& candidate, double time_s) {
     return Eigen::Vector2d((a.G_plane_patch * Eigen::Vector3d::UnitZ()).hnormalized());
   };
   const double dt = time_s - last_time_s_;
-  if (locked_ && dt > 0)
+  if (locked_ && dt > 0) {
     plane_velocity_ = (centre_of(candidate.alignment) - centre_of(last_)) / dt;
-  else {
+  } else {
     plane_velocity_.setZero();
     surprise_px_ = INFINITY;  // nothing is foreseen yet
   }

@@ -64,7 +64,7 @@ class PlanarTracker final : public TargetTracker {
   Candidate try_from(const Alignment& start, int coarsest, const Quad& expected);
   double found_again_quality() const;
   Candidate follow(const Frame& frame);
-  Candidate search(const Quad& around, double radius_px, int candidates);
+  Candidate search(const Quad& around, double radius_px, int candidates, bool turned);
   Candidate reacquire(const cv::Mat& grey);
   void build_pyramid(const cv::Mat& grey, const Quad& a, const Quad& b, double margin_px, int levels);
   void believe(const Candidate& candidate, double time_s);

@@ -16,16 +16,16 @@ float usable_mean(const Patch& patch) {
   return static_cast<float>(sum / n);
 }
 
-// Glare speaks neither for nor against a place.
-cv::Mat without_glare(const cv::Mat& picture, float mean) {
+cv::Mat without_glare(const cv::Mat& picture) {
+  const cv::Mat glare = picture >= kSaturatedGrey;
+  if (cv::countNonZero(glare) == 0) return picture;
   cv::Mat clear = picture.clone();
-  clear.setTo(mean, picture >= kSaturatedGrey);
+  clear.setTo(cv::mean(picture, ~glare), glare);
   return clear;
 }
 
 // The template as it looks in the picture's axes under `corners`, at the level's scale; a rectangle cut from it.
-cv::Mat draw_template(const Patch& patch, float mean, const Quad& corners, float scale,
-                      Eigen::Vector2d& centre_offset) {
+cv::Mat draw_template(const Patch& patch, const Quad& corners, float scale, Eigen::Vector2d& centre_offset) {
   double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
   for (const auto& c : corners) {
     left = std::min(left, c.x()), right = std::max(right, c.x());
@@ -39,6 +39,7 @@ cv::Mat draw_template(const Patch& patch, float mean, const Quad& corners, float
   for (std::size_t i = 0; i < 4; ++i) to[i] = (corners[i] - Eigen::Vector2d(left, top)) * s;
   const Eigen::Matrix3d H = homography_between(rectangle(0, 0, patch.width - 1, patch.height - 1), to);
   cv::Mat grey(patch.height, patch.width, CV_32FC1);
+  const float mean = usable_mean(patch);
   for (std::size_t i = 0; i < patch.size(); ++i)
     grey.ptr<float>()[i] = patch.grey[i] < kSaturatedGrey ? patch.grey[i] : mean;
   const cv::Matx33d H_cv(H(0, 0), H(0, 1), H(0, 2), H(1, 0), H(1, 1), H(1, 2), H(2, 0), H(2, 1), H(2, 2));
@@ -56,15 +57,14 @@ int search_level(double side_px, int levels) {
   return level;
 }
 
-std::vector<Eigen::Vector2d> find_template(const Patch& patch, const Quad& corners, const PyramidLevel& picture,
-                                           const Eigen::Vector2d& around, double radius_px, int count) {
-  std::vector<Eigen::Vector2d> places;
+std::vector<FoundPlace> find_template(const Patch& patch, const Quad& corners, const PyramidLevel& picture,
+                                      const Eigen::Vector2d& around, double radius_px, int count) {
+  std::vector<FoundPlace> places;
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();
-  const float mean = usable_mean(patch);
-  const cv::Mat drawn = is_convex(corners) ? draw_template(patch, mean, corners, picture.scale, offset) : cv::Mat();
+  const cv::Mat drawn = is_convex(corners) ? draw_template(patch, corners, picture.scale, offset) : cv::Mat();
   if (drawn.empty() || drawn.cols > picture.image.cols || drawn.rows > picture.image.rows) return places;
   cv::Mat score;
-  cv::matchTemplate(without_glare(picture.image, mean), drawn, score, cv::TM_CCOEFF_NORMED);
+  cv::matchTemplate(without_glare(picture.image), drawn, score, cv::TM_CCOEFF_NORMED);
   const Eigen::Vector2d origin(picture.u0, picture.v0);
   const double s = static_cast<double>(picture.scale);
   for (int row = 0; row < score.rows; ++row)
@@ -78,7 +78,7 @@ std::vector<Eigen::Vector2d> find_template(const Patch& patch, const Quad& corne
     cv::Point at;
     cv::minMaxLoc(score, nullptr, &best, nullptr, &at);
     if (best < kSmallestCorrelation) break;
-    places.emplace_back((Eigen::Vector2d(at.x, at.y) + offset + origin) / s);
+    places.push_back({(Eigen::Vector2d(at.x, at.y) + offset + origin) / s, best});
     const cv::Rect near(at.x - drawn.cols / 4, at.y - drawn.rows / 4, drawn.cols / 2 + 1, drawn.rows / 2 + 1);
     score(near & cv::Rect(0, 0, score.cols, score.rows)).setTo(-1);
   }
