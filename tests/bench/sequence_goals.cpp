@@ -161,9 +161,9 @@ void sweep(const Choice& o) {
       for (const int side : o.sides) {
         const Cell& c = cells[{tracker, side}];
         const std::string error = c.kept ? fmt::format("{:.4f}", servo::spread_of(c.errors_px).mean) : "-";
-        fmt::print("{:<14}{:<8}{:>5}{:>8}{:>9}{:>9.4f}{:>9.3f}{:>9.4f}{:>7}{:>7}{:>9.3f}{:>9.3f}\n", tracker, name,
-                   side, fmt::format("{}/{}", c.kept, c.runs), error, c.floor_px / std::max(1, c.runs), c.max_px,
-                   servo::spread_of(c.target_px).mean, c.lost_frames, c.wrong_ok, servo::percentile(c.ms, 50),
+        fmt::print("{:<14}{:<8}{:>5}{:>9}{:>8}{:>9}{:>9.4f}{:>9.3f}{:>9.4f}{:>7}{:>7}{:>9.3f}{:>9.3f}\n", tracker, name,
+                   side, c.refused, fmt::format("{}/{}", c.kept, c.runs), error, c.floor_px / std::max(1, c.runs),
+                   c.max_px, servo::spread_of(c.target_px).mean, c.lost_frames, c.wrong_ok, servo::percentile(c.ms, 50),
                    servo::percentile(c.ms, 99));
       }
     std::fflush(stdout);

@@ -21,7 +21,7 @@ struct Segment {  // points of one template row that lie in one cell
   std::ptrdiff_t stride;
   const std::array<float, kBlock>* along_x;  // the cell's three splines at these columns
   std::array<float, 3> along_y;
-  float gain, scale;  // scale: 1/2 (ESM mean) * 1/2 (central difference) / step
+  float gain, share, scale;  // scale: (1 - share) * 1/2 (central difference) / step
 };
 
 HEARTSERVO_SIMD void jacobian_segment(const Segment& s, std::size_t n, std::size_t at, Block& J) {
@@ -30,8 +30,8 @@ HEARTSERVO_SIMD void jacobian_segment(const Segment& s, std::size_t n, std::size
   for (std::size_t i = 0; i < n; ++i) {
     const float root = std::sqrt(s.weight[i]), half_gain = s.scale * (s.gain + s.gain_offset[i]);
     const float* g = s.grey + i;
-    gx[i] = root * (0.5F * s.template_x[i] + half_gain * (g[1] - g[-1]));
-    gy[i] = root * (0.5F * s.template_y[i] + half_gain * (g[s.stride] - g[-s.stride]));
+    gx[i] = root * (s.share * s.template_x[i] + half_gain * (g[1] - g[-1]));
+    gy[i] = root * (s.share * s.template_y[i] + half_gain * (g[s.stride] - g[-s.stride]));
     grey[i] = root * g[0];
     J[27][at + i] = root;
     J[28][at + i] = root * s.residual[i];
@@ -139,7 +139,8 @@ void add_bend_pass(const Patch& patch, const Light& light, const BentGrid& grid,
                                 along_x.data(),
                                 {static_cast<float>(by[0]), static_cast<float>(by[1]), static_cast<float>(by[2])},
                                 static_cast<float>(light.gain),
-                                0.25F / patch.step};
+                                patch.template_share,
+                                (1 - patch.template_share) * 0.5F / patch.step};
           jacobian_segment(segment, n, filled, J);
           filled += n;
         }

@@ -13,9 +13,27 @@ namespace {
 
 constexpr int kSmallestSide = 9;            // points; a coarser template says nothing
 constexpr std::size_t kAffinePoints = 500;  // fewer tell a shift, but with glare on them no shape
+constexpr double kNotThere = 2 * kTukey;    // beside the place the texture itself is what differs
+constexpr double kKnownNoise = 0.8;         // share of the gradient's noise that is certainly there
 constexpr double kNear_px = 0.1;            // where bilinear sampling has done its part; twice that a level up
 constexpr int kLastIterations = 5;          // with cubic sampling
 constexpr double kSmallestShare = 0.3;      // of the template's points must be in the picture
+
+using Matrix8d = Eigen::Matrix<double, 8, 8>;
+
+// What the noise adds to J^T J by its own gradient: the curvature of the cost is that much smaller, and steps would
+// stop short of the minimum where there is little texture.
+Matrix8d gradient_noise(const Patch& patch) {
+  Matrix8d sum = Matrix8d::Zero();
+  for (int row = 0; row < patch.height; ++row)
+    for (int column = 0; column < patch.width; ++column) {
+      const double usable = static_cast<double>(patch.usable[static_cast<std::size_t>(row * patch.width + column)]);
+      const Eigen::Matrix<double, 2, 8> J = sl3_point_jacobian(patch.x_of(column), patch.y_of(row));
+      sum += usable * J.transpose() * J;
+    }
+  const double share = static_cast<double>(patch.template_share), noise = static_cast<double>(patch.gradient_noise);
+  return noise * noise * (share * share + (1 - share) * (1 - share)) * sum;
+}
 
 class EsmAligner final : public PatchAligner {
  public:
@@ -26,14 +44,17 @@ class EsmAligner final : public PatchAligner {
     camera_ = camera;
     patches_.clear();
     usable_.clear();
+    noise_.clear();
     grids_.clear();
     for (int level = 0; level < picture.levels(); ++level) {
       const int width = (side_x >> level) + 1, height = (side_y >> level) + 1;
       if (level > 0 && std::min(width, height) < kSmallestSide) break;
       patches_.push_back(make_patch(picture.level(level), camera, G, width, height));
+      quieten_gradient(patches_.back());
       double usable = 0;
       for (const float u : patches_.back().usable) usable += static_cast<double>(u);
       usable_.push_back(usable);
+      noise_.push_back(gradient_noise(patches_.back()));
       if (options_.cell_px > 0) grids_.emplace_back(bend_of(side_x, side_y, options_.cell_px), patches_.back());
     }
     half_side_px_ = 0.5 * std::max(side_x, side_y);
@@ -49,6 +70,7 @@ class EsmAligner final : public PatchAligner {
     a.iterations = 0;
     moved_.setZero();
     start_gain_ = start.gain;
+    wide_ = model != MotionModel::HOMOGRAPHY;
     coarsest = std::min({coarsest, picture.levels() - 1, static_cast<int>(patches_.size()) - 1});
     // Bilinear sampling to come near, cubic for the last steps. A coarse level has too few points for the perspective
     // terms: affine is enough to come near.
@@ -75,12 +97,15 @@ class EsmAligner final : public PatchAligner {
     a.converged = false;
     BentPoints bent;
     if (a.bend.cols() > 0 && !grids_.empty()) bent = grids_[static_cast<std::size_t>(level)].bend(a.bend);
+    // few parameters cannot run away with what hides the region, and may look further
+    const bool wide = interpolation == Interpolation::LINEAR && wide_;
     for (int i = 0; i < iterations; ++i, ++a.iterations) {
       warp(picture, camera_, a.G_plane_patch, patch, interpolation, buffers_.grey.data(), buffers_.inside.data(), bent);
-      const AlignmentPass pass = esm_pass(patch, {a.gain, a.bias, bent.gain_offset}, buffers_);
+      const AlignmentPass pass =
+          esm_pass(patch, {a.gain, a.bias, bent.gain_offset}, buffers_, wide ? kNotThere : kTukey);
       if (pass.points < kSmallestShare * usable) return false;
       Vector10d step;
-      if (!solve(pass, static_cast<int>(model), step)) return false;
+      if (!solve(pass, level, static_cast<int>(model), step)) return false;
       moved_ += step;
       const Eigen::Matrix3d M = sl3_exp(step.head<8>());
       a.G_plane_patch = to_sl3(a.G_plane_patch * M);
@@ -101,8 +126,10 @@ class EsmAligner final : public PatchAligner {
   // Solves for the first parameters of SL(3) and the two of the illumination. The shape is tied to that of the start,
   // as loosely as it may change between two frames, weighed against the noise: where texture or light leave it open, it
   // stays instead of running away (a maximum a posteriori estimate).
-  bool solve(const AlignmentPass& pass, int parameters, Vector10d& step) const {
+  bool solve(const AlignmentPass& pass, int level, int parameters, Vector10d& step) const {
     Matrix10d A = pass.JtJ;
+    const auto l = static_cast<std::size_t>(level);
+    if (usable_[l] > 0) A.topLeftCorner<8, 8>() -= kKnownNoise * pass.weight / usable_[l] * noise_[l];
     Vector10d b = pass.Jtr;
     const double variance = std::max(1.0, pass.noise_grey * pass.noise_grey);
     for (int k = 2; k < 8; ++k) {
@@ -119,7 +146,12 @@ class EsmAligner final : public PatchAligner {
       b(k) = 0;
     }
     A.diagonal() *= 1 + 1e-9;
-    const Eigen::LDLT<Matrix10d> ldlt(A);
+    Eigen::LDLT<Matrix10d> ldlt(A);
+    if (!(ldlt.vectorD().minCoeff() > 0)) {  // less texture than noise
+      A.topLeftCorner(parameters, parameters) +=
+          kKnownNoise * pass.weight / usable_[l] * noise_[l].topLeftCorner(parameters, parameters);
+      ldlt.compute(A);
+    }
     if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) return false;
     step = -ldlt.solve(b);
     return step.allFinite();
@@ -147,10 +179,12 @@ class EsmAligner final : public PatchAligner {
   Camera camera_;
   std::vector<Patch> patches_;
   std::vector<double> usable_;
+  std::vector<Matrix8d> noise_;  // gradient_noise() of each level
   std::vector<BentGrid> grids_;  // of a region that bends
   AlignmentBuffers buffers_;
   Vector10d moved_ = Vector10d::Zero();  // from the start of this alignment, to first order
   double half_side_px_ = 1, start_gain_ = 1;
+  bool wide_ = false;
 };
 
 }  // namespace

@@ -64,7 +64,7 @@ HEARTSERVO_SIMD float tukey_pass(const float* __restrict residual, float* __rest
 struct RowInput {
   const float *grey, *residual, *weight, *template_x, *template_y;
   std::size_t stride;
-  float x0, step, y, half_gain;  // half_gain: 1/2 (ESM mean) * 1/2 (central difference) * gain / step
+  float x0, step, y, share, half_gain;  // half_gain: (1 - share) * 1/2 (central difference) * gain / step
 };
 
 // Jacobian rows of `n` points of one template row, weighted by sqrt(w).
@@ -76,9 +76,9 @@ HEARTSERVO_SIMD void jacobian_row(const RowInput& in, std::size_t n, std::size_t
     const float root = std::sqrt(in.weight[i]);
     const float x = in.x0 + static_cast<float>(i) * in.step, y = in.y;
     const float* g = in.grey + i;
-    const float gx = root * (0.5F * in.template_x[i] + in.half_gain * (g[1] - g[-1]));
-    const float gy =
-        root * (0.5F * in.template_y[i] + in.half_gain * (g[in.stride] - g[-static_cast<std::ptrdiff_t>(in.stride)]));
+    const float gx = root * (in.share * in.template_x[i] + in.half_gain * (g[1] - g[-1]));
+    const float gy = root * (in.share * in.template_y[i] +
+                             in.half_gain * (g[in.stride] - g[-static_cast<std::ptrdiff_t>(in.stride)]));
     const float gxx = gx * x, gyy = gy * y, radial = gxx + gyy;
     j[0][i] = gx;
     j[1][i] = gy;
@@ -137,7 +137,7 @@ void AlignmentBuffers::resize(std::size_t n) {
   for (auto* v : {&grey, &inside, &clear, &residual, &weight, &sample}) v->resize(std::max(v->size(), n));
 }
 
-void weigh_points(const Patch& patch, const Light& light, AlignmentBuffers& b, AlignmentPass& pass) {
+void weigh_points(const Patch& patch, const Light& light, AlignmentBuffers& b, AlignmentPass& pass, double bound) {
   const std::size_t n = patch.size();
   const float gain = static_cast<float>(light.gain), bias = static_cast<float>(light.bias);
   if (light.gain_offset)
@@ -155,14 +155,14 @@ void weigh_points(const Patch& patch, const Light& light, AlignmentBuffers& b, A
   pass.noise_grey = static_cast<double>(noise);
   pass.weight = static_cast<double>(
       tukey_pass(b.residual.data(), b.weight.data(), n,
-                 1.0F / (static_cast<float>(kTukey) * std::max(noise, static_cast<float>(kSmallestNoise)))));
+                 1.0F / (static_cast<float>(bound) * std::max(noise, static_cast<float>(kSmallestNoise)))));
 }
 
-AlignmentPass esm_pass(const Patch& patch, const Light& light, AlignmentBuffers& b) {
+AlignmentPass esm_pass(const Patch& patch, const Light& light, AlignmentBuffers& b, double bound) {
   AlignmentPass pass;
   pass.JtJ.setZero();
   pass.Jtr.setZero();
-  weigh_points(patch, light, b, pass);
+  weigh_points(patch, light, b, pass, bound);
   Block J;
   std::size_t filled = 0;
   const auto width = static_cast<std::size_t>(patch.width);
@@ -179,7 +179,8 @@ AlignmentPass esm_pass(const Patch& patch, const Light& light, AlignmentBuffers&
                         patch.x_of(static_cast<int>(column)),
                         patch.step,
                         patch.y_of(row),
-                        0.25F * static_cast<float>(light.gain) / patch.step};
+                        patch.template_share,
+                        (1 - patch.template_share) * 0.5F * static_cast<float>(light.gain) / patch.step};
       jacobian_row(in, count, filled, J);
       filled += count;
       column += count;

@@ -35,10 +35,11 @@ struct AlignmentPass {
 /// residual = gain * buffers.grey + bias - template, on usable points; Tukey weights scaled by the median absolute
 /// deviation; J of the efficient second-order minimisation (Benhimane & Malis 2004): the mean of the picture's and
 /// the template's gradient.
-AlignmentPass esm_pass(const Patch& patch, const Light& light, AlignmentBuffers& buffers);
+AlignmentPass esm_pass(const Patch& patch, const Light& light, AlignmentBuffers& buffers, double bound = kTukey);
 
 /// Its first half: residuals and robust weights only. JtJ and Jtr stay unset.
-void weigh_points(const Patch& patch, const Light& light, AlignmentBuffers& buffers, AlignmentPass& pass);
+void weigh_points(const Patch& patch, const Light& light, AlignmentBuffers& buffers, AlignmentPass& pass,
+                  double bound = kTukey);
 
 /// Zero-mean normalised correlation of the template and buffers.grey in that light.
 struct Correlation {

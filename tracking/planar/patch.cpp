@@ -1,10 +1,17 @@
 #include "tracking/planar/patch.hpp"
 
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "tracking/planar/noise_of.hpp"
 #include "tracking/settings/target_clones.hpp"
 
 namespace heartservo::tracking {
 
 namespace {
+
+constexpr float kMuchNoise = 0.5F;  // of the texture's gradient, squared
+constexpr double kSmoothing = 1.2;  // points
 
 // Everything the inner loop needs, in floats: 3e-8 on the normalised plane is 2e-5 px.
 struct WarpRow {
@@ -134,6 +141,21 @@ void warp(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d
   }
 }
 
+namespace {
+
+void differentiate(const std::vector<float>& grey, Patch& patch) {
+  const float half = 0.5F / patch.step;
+  const auto w = static_cast<std::size_t>(patch.width);
+  for (int row = 1; row + 1 < patch.height; ++row)
+    for (int column = 1; column + 1 < patch.width; ++column) {
+      const auto i = static_cast<std::size_t>(row * patch.width + column);
+      patch.gradient_x[i] = half * (grey[i + 1] - grey[i - 1]);
+      patch.gradient_y[i] = half * (grey[i + w] - grey[i - w]);
+    }
+}
+
+}  // namespace
+
 Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,
                  int height) {
   Patch patch;
@@ -147,12 +169,10 @@ Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::M
   patch.usable.assign(n, 0);
   std::vector<float> inside(n);
   warp(level, camera, G_plane_patch, patch, Interpolation::CUBIC, patch.grey.data(), inside.data());
-  const float half = 0.5F / patch.step;
+  differentiate(patch.grey, patch);
   for (int row = 1; row + 1 < height; ++row)
     for (int column = 1; column + 1 < width; ++column) {
-      const std::size_t i = static_cast<std::size_t>(row * width + column), w = static_cast<std::size_t>(width);
-      patch.gradient_x[i] = half * (patch.grey[i + 1] - patch.grey[i - 1]);
-      patch.gradient_y[i] = half * (patch.grey[i + w] - patch.grey[i - w]);
+      const auto i = static_cast<std::size_t>(row * width + column);
       patch.usable[i] = inside[i];
     }
   // Glare spoils the gradients and the blurred rim around it too.
@@ -165,6 +185,37 @@ Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::M
           patch.usable[static_cast<std::size_t>(v * width + u)] = 0;
     }
   return patch;
+}
+
+void quieten_gradient(Patch& patch) {
+  const float noise = static_cast<float>(noise_of(patch)) / std::sqrt(2.0F) / patch.step;
+  patch.gradient_noise = noise;
+  Eigen::Matrix2f sum = Eigen::Matrix2f::Zero();
+  float n = 0;
+  for (std::size_t i = 0; i < patch.size(); ++i) {
+    const Eigen::Vector2f g(patch.gradient_x[i], patch.gradient_y[i]);
+    sum += patch.usable[i] * g * g.transpose();
+    n += patch.usable[i];
+  }
+  if (!(n > 0)) return;
+  // the smaller eigenvalue: the texture in its weakest direction, with noise
+  const float mean = sum.trace() / 2, weakest = (mean - std::sqrt(std::max(0.0F, mean * mean - sum.determinant()))) / n;
+  if (noise * noise < kMuchNoise * (weakest - noise * noise)) return;
+  const cv::Size size(patch.width, patch.height);
+  cv::Mat smooth(size, CV_32FC1), clear(size, CV_32FC1);
+  for (std::size_t i = 0; i < patch.size(); ++i) {
+    clear.ptr<float>()[i] = patch.grey[i] < kSaturatedGrey ? 1 : 0;
+    smooth.ptr<float>()[i] = clear.ptr<float>()[i] * patch.grey[i];
+  }
+  cv::GaussianBlur(smooth, smooth, {}, kSmoothing);
+  cv::GaussianBlur(clear, clear, {}, kSmoothing);
+  std::vector<float> grey(patch.size());
+  for (std::size_t i = 0; i < patch.size(); ++i)
+    grey[i] = smooth.ptr<float>()[i] / std::max(1e-3F, clear.ptr<float>()[i]);
+  differentiate(grey, patch);
+  patch.template_share = 1;
+  // of the derivative of a Gaussian: sigma^2 / (8 pi s^4)
+  patch.gradient_noise = noise * std::sqrt(2.0F / (8 * static_cast<float>(M_PI * std::pow(kSmoothing, 4))));
 }
 
 }  // namespace heartservo::tracking

@@ -18,7 +18,9 @@ struct Patch {
   float step = 0;             ///< patch coordinate per grid step
   std::vector<float> grey;
   std::vector<float> gradient_x, gradient_y;  ///< per unit of patch coordinate
-  std::vector<float> usable;                  ///< 1, or 0 at the border and where the template is saturated
+  float template_share = 0.5F;  ///< of the template's gradient in the alignment's; the rest is the picture's
+  float gradient_noise = 0;     ///< standard deviation that noise gives to gradient_x and _y
+  std::vector<float> usable;    ///< 1, or 0 at the border and where the template is saturated
 
   std::size_t size() const { return grey.size(); }
   float x_of(int column) const { return (static_cast<float>(column) - 0.5F * static_cast<float>(width - 1)) * step; }
@@ -40,6 +42,11 @@ struct BentPoints {
 /// is 1 where the sample lies in the window, else 0. Both have patch.size() elements.
 void warp(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, const Patch& patch,
           Interpolation interpolation, float* grey, float* inside, const BentPoints& bent = {});
+
+/// Where noise has as large a gradient as the texture, its products with the noise of the residual would outweigh what
+/// the texture says: takes the gradients from the template smoothed by 1.2 points, and the picture's not at all. Else
+/// leaves the patch alone. Sets gradient_noise.
+void quieten_gradient(Patch& patch);
 
 /// A patch of width x height points at the given level, grey values from the picture under G_plane_patch.
 Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,

@@ -119,21 +119,22 @@ std::string PlanarTracker::unfit_texture() const {
   const Patch& patch = aligner_->patch(0);
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   double n = 0;
-  for (std::size_t i = 0; i < patch.size(); ++i) {
-    const Eigen::Vector2d g(patch.gradient_x[i], patch.gradient_y[i]);
-    sum += static_cast<double>(patch.usable[i]) * g * g.transpose();
+  const std::size_t w = static_cast<std::size_t>(patch.width);
+  for (std::size_t i = w; i + w < patch.size(); ++i) {  // unusable at the sides
+    const float* g = &patch.grey[i];
+    const Eigen::Vector2d gradient(0.5F * (g[1] - g[-1]), 0.5F * (g[w] - *(g - w)));
+    sum += static_cast<double>(patch.usable[i]) * gradient * gradient.transpose();
     n += static_cast<double>(patch.usable[i]);
   }
   if (n < 0.3 * static_cast<double>(patch.size())) return "the region is mostly saturated or outside the picture";
-  // noise has a gradient, too: half its variance, along both axes
-  const double step = static_cast<double>(patch.step), noise = noise_of(patch);
+  const double noise = noise_of(patch);  // has a gradient, too: half its variance, along both axes
   const Eigen::Vector2d eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(sum / n).eigenvalues().array() * step * step - noise * noise / 2;
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(sum / n).eigenvalues().array() - noise * noise / 2;
   const double weakest = std::sqrt(std::max(0.0, eigenvalues[0]));
   if (weakest < kSmallestGradient)
     return fmt::format(
-        "the region has too little texture: RMS gradient {:.2f} grey/px in its weakest direction without the noise of "
-        "{:.1f} grey, {} needed, condition number {:.0f}",
+        "the region has too little texture: RMS gradient {:.2f} grey/px in its weakest direction beyond that of noise "
+        "of {:.1f} grey, {} needed, condition number {:.0f}",
         weakest, noise, kSmallestGradient, std::max(eigenvalues[1], 0.0) / std::max(eigenvalues[0], 1e-12));
   return "";
 }

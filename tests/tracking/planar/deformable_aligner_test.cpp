@@ -113,6 +113,19 @@ TEST(DeformableAligner, BridgesGlareSmoothly) {
   EXPECT_LT((f.found(a, {150, 120}) - Eigen::Vector2d(150, 120) - bump({150, 120}, 3)).norm(), 0.5);  // under it
 }
 
+TEST(DeformableAligner, IsNotPulledByATool) {
+  Fixture f;
+  Alignment a = f.start;
+  for (int k = 1; k <= 4; ++k) {
+    cv::Mat image = bumped(0.75 * k);
+    image(cv::Rect(125, 95, 40, 38)).setTo(15);
+    a = f.aligner->align(pyramid_of(image), a, 1, MotionModel::HOMOGRAPHY);
+  }
+  ASSERT_TRUE(a.converged);
+  EXPECT_LT(a.visible, 0.85);
+  EXPECT_LT((f.found(a, {180, 150}) - Eigen::Vector2d(180, 150) - bump({180, 150}, 3)).norm(), 0.2);
+}
+
 TEST(DeformableAligner, SaysSoWhenTheRegionLeavesThePictureOrIsPlain) {
   Fixture f;
   Alignment start = f.start;
