@@ -39,41 +39,19 @@ void FourierMotion::start(const Axes& offset, double noise_m, int cardiac_harmon
   const auto add = [&](int n, int m, double size) {
     n_[pair] = n;
     m_[pair] = m;
-    if (size > 0) P_(1 + 2 * pair, 1 + 2 * pair) = P_(2 + 2 * pair, 2 + 2 * pair) = prior(size);
+    P_(1 + 2 * pair, 1 + 2 * pair) = P_(2 + 2 * pair, 2 + 2 * pair) = prior(size);
     ++pair;
   };
-  for (int k = 1; k <= options_.respiration_harmonics; ++k) add(0, k, options_.respiration_m / k);
-  for (int n = 1; n <= cardiac_; ++n) add(n, 0, 0);
+  for (int k = 1; k <= options_.respiration_harmonics; ++k) add(0, k, options_.respiration_m / (k * k));
+  for (int n = 1; n <= cardiac_; ++n) add(n, 0, options_.cardiac_m / (n * n));
   for (int n = 1; n <= sidebands_; ++n)
-    for (const int side : {1, -1}) add(n, side, 0);
-  columns_ = 1 + 2 * pair;
+    for (const int side : {1, -1}) add(n, side, options_.sideband_m / (n * n));
+  open(cardiac_, true);
 }
 
-void FourierMotion::open_cardiac(int from, int to) {
-  for (int n = from; n <= std::min(to, cardiac_); ++n) {
-    const int c = 1 + 2 * (options_.respiration_harmonics + n - 1);
-    P_(c, c) = P_(c + 1, c + 1) = std::pow(options_.cardiac_m / (n * n) / noise_m_, 2);
-  }
-}
-
-void FourierMotion::open_sidebands() {
-  for (int n = 1; n <= sidebands_; ++n) {
-    const int c = 1 + 2 * (options_.respiration_harmonics + cardiac_ + 2 * (n - 1));
-    for (int i = 0; i < 4; ++i) P_(c + i, c + i) = std::pow(options_.sideband_m / (n * n) / noise_m_, 2);
-  }
-}
-
-void FourierMotion::forget_respiration() {
-  const int last = 1 + 2 * options_.respiration_harmonics;
-  for (int c = 1; c < columns_; ++c) {
-    const int pair = (c - 1) / 2;
-    if (m_[pair] == 0) continue;
-    const double size = c < last ? options_.respiration_m / m_[pair] : options_.sideband_m / n_[pair];
-    P_.row(c).setZero();
-    P_.col(c).setZero();
-    P_(c, c) = size * size / (noise_m_ * noise_m_);
-    a_.row(c).setZero();
-  }
+void FourierMotion::open(int cardiac_harmonics, bool sidebands) {
+  const int cardiac = options_.respiration_harmonics + std::min(cardiac_harmonics, cardiac_);
+  columns_ = 1 + 2 * (sidebands ? options_.respiration_harmonics + cardiac_ + 2 * sidebands_ : cardiac);
 }
 
 void FourierMotion::basis(double heart, double breath, Basis& h) const {
@@ -88,6 +66,7 @@ void FourierMotion::basis(double heart, double breath, Basis& h) const {
   for (int k = 1; k <= options_.respiration_harmonics; ++k) add(z *= v);
   z = 1;
   for (int n = 1; n <= cardiac_; ++n) add(z *= u);
+  if (c >= columns_) return;
   z = 1;
   for (int n = 1; n <= sidebands_; ++n) {
     z *= u;

@@ -17,7 +17,7 @@ struct FourierOptions {
   int cardiac_harmonics = 12;
   int sidebands = 12;        ///< cardiac harmonics that breathing modulates; not more than there are
   double memory_s = 40;      ///< time constant of forgetting
-  double respiration_m = 5e-3, cardiac_m = 3e-3, sideband_m = 3e-4;  ///< expected size; of the n-th harmonic, 1/n of it
+  double respiration_m = 4e-3, cardiac_m = 3e-3, sideband_m = 3e-4;  ///< expected size; of the n-th harmonic, 1/n^2
 };
 
 class FourierMotion {
@@ -31,11 +31,9 @@ class FourierMotion {
   /// options have (what lies above the sampling's reach is no motion). `noise_m`: of a measurement, against which the
   /// options' expected sizes are weighed. Allocates nothing.
   void start(const Axes& offset, double noise_m, int cardiac_harmonics);
-  /// From now on the cardiac harmonics `from` to `to`, or their sidebands, may differ from 0.
-  void open_cardiac(int from, int to);
-  void open_sidebands();
-  /// Breathing alone is unknown again.
-  void forget_respiration();
+  /// From now on only so many cardiac harmonics, with sidebands (all) or without, differ from 0: what is known of a few
+  /// beats does not hold more. start() opens all.
+  void open(int cardiac_harmonics, bool sidebands);
 
   /// Regressors at a phase of the heart and of breathing (cycles). `h` keeps its size: that of make_basis().
   void basis(double heart, double breath, Basis& h) const;

@@ -8,6 +8,7 @@ namespace heartservo::servo {
 namespace {
 
 constexpr double kSoftness = 0.3;
+constexpr int kFirstHarmonics = 6;
 constexpr double kFirstCorrelation_s = 0.08, kSettling_s = 6;
 
 double near_zero(double cycles) { return cycles - std::round(cycles); }
@@ -17,7 +18,7 @@ HarmonicFilter::HarmonicFilter(const FourierOptions& fourier) : motion_(fourier)
 
 void HarmonicFilter::start(const Axes& position, double noise_m, double beat_hz, double period_s) {
   motion_.start(position, noise_m, static_cast<int>(0.4 / (period_s * beat_hz)));
-  motion_.open_cardiac(1, 6);
+  motion_.open(kFirstHarmonics, false);
   residual_.setConstant(1e-6);
   taught_ = 0;
 }
@@ -80,8 +81,8 @@ void HarmonicFilter::observe(double time_s, const Axes& position, const Axes& no
   const double correlated = 1 + (kFirstCorrelation_s * std::exp(-(time_s - started_s_) / kSettling_s)) / std::max(dt, 1e-3);
   const Axes r = noise.array() * (1 + share) + correlated * (residual_ - noise).array().max(0.0);
   const double age = time_s - started_s_;
-  if (age > 3 && age - dt <= 3) motion_.open_cardiac(7, 99);
-  if (age > 6 && age - dt <= 6) motion_.open_sidebands();
+  if (age > 3 && age - dt <= 3) motion_.open(motion_.cardiac_harmonics(), false);
+  if (age > 6 && age - dt <= 6) motion_.open(motion_.cardiac_harmonics(), true);
   const double fade = std::exp(-dt / 15.0);
   for (std::size_t i = 0; i < kClocks; ++i) {
     BeatClock& clock = clocks_[i];

@@ -74,11 +74,11 @@ void HarmonicTracker::slice() {
   switch (stage_) {
     case Stage::GATHER: gather(); break;
     case Stage::SEARCH:
-      if (!search_.step()) break;
+      if (!search_.step() && !search_.step()) break;
       stage_ = search_.found() ? Stage::TEACH : Stage::GATHER;
       wait_until_s_ = last_s_ + 0.5;
       if (!search_.found()) break;
-      next_ = first_after(search_.first_mark_s());
+      next_ = first_after(search_.first_mark_s() - 0.4 / search_.beat_hz());
       filter_.start(sample(next_).position, std::sqrt(sample(next_).noise.mean()), search_.beat_hz(), period_s_);
       break;
     case Stage::TEACH: teach(); break;
@@ -109,10 +109,10 @@ std::size_t HarmonicTracker::first_after(double time_s) const {
 
 void HarmonicTracker::teach() {
   // beyond the last beat found the phase is a guess
-  const double until = search_.last_mark_s() + 0.3 / search_.beat_hz();
-  for (int n = 0; n < 6; ++n) {
+  const double until = search_.last_mark_s() + 0.8 / search_.beat_hz();
+  for (int n = 0; n < 8; ++n) {
     if (next_ < begin_ || next_ >= end_ || sample(next_).time_s > until) {
-      next_ = std::max(begin_, first_after(search_.first_mark_s()));
+      next_ = std::max(begin_, first_after(search_.first_mark_s() - 0.4 / search_.beat_hz()));
       const double time = sample(next_).time_s;
       filter_.track(time, search_.beat_phase(time), search_.beat_hz(), search_.breath_phase(time), search_.breath_hz());
       ++next_;
@@ -126,7 +126,7 @@ void HarmonicTracker::teach() {
 }
 
 void HarmonicTracker::catch_up() {
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < 5; ++n) {
     if (next_ >= end_) {
       stage_ = Stage::FOLLOW;
       return;

@@ -1,7 +1,12 @@
 #pragma once
-// How well predictions came true, at several horizons: each is kept until a sample reaches the time it was for, and the
-// squared error then enters a fast and a slow running mean. What lies between two samples is taken from the straight
-// line between them. Nothing is allocated after construction.
+// How well several predictors foresaw what then came, at one horizon, and what mixture of them would have done best.
+//
+// Each prediction is kept until a sample reaches the time it was for; the errors then enter running means of their
+// products, E[e_i . e_j]. The weights that add up to 1 and leave least are C^-1 1 / (1' C^-1 1) (Bates and Granger, "The
+// combination of forecasts", 1969), here without negative ones. The samples' own noise adds the same to every product
+// and does not move the weights. What lies between two samples is taken from the straight line between them. Nothing is
+// allocated after construction.
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
@@ -12,82 +17,48 @@ namespace heartservo::servo {
 class HorizonErrors {
  public:
   using Axes = Eigen::Matrix<double, 1, 3>;
+  static constexpr int kMostPredictors = 8;
+  using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMostPredictors, 3>;
+  using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostPredictors, 1>;
 
-  HorizonErrors(double horizon_s, std::size_t predictors, double fast_s = 0.7, double slow_s = 6)
-      : horizon_s_(horizon_s), fast_s_(fast_s), slow_s_(slow_s), pending_(kMost), means_(predictors) {
-    for (auto& p : pending_) p.positions.resize(predictors);
-  }
+  /// Time constants: of the means, and of a faster one of each predictor's own error, which tells that it has failed.
+  HorizonErrors(double horizon_s, int predictors, double slow_s = 6, double fast_s = 0.5);
 
   double horizon_s() const { return horizon_s_; }
+  void forget();
 
-  void forget() {
-    first_ = end_ = 0;
-    seen_ = false;
-    for (auto& m : means_) m = {};
-  }
-
-  /// Before the predictions made at `time_s` are added: what was foreseen for the time since the last sample.
-  void observe(double time_s, const Axes& position) {
-    while (first_ != end_) {
-      const Pending& p = pending_[first_ % kMost];
-      if (p.time_s > time_s + 1e-9) break;
-      ++first_;
-      // after a gap nothing is known of the time in between
-      if (!seen_ || p.time_s < last_s_ || (time_s - last_s_ > kGap_s && p.time_s < time_s - 1e-6))
-        continue;
-      const double share = (p.time_s - last_s_) / (time_s - last_s_);
-      const Axes truth = last_ + share * (position - last_);
-      for (std::size_t i = 0; i < means_.size(); ++i) add(means_[i], (p.positions[i] - truth).squaredNorm(), p.dt);
-    }
-    seen_ = true;
-    last_s_ = time_s;
-    last_ = position;
-  }
-
-  /// Room for the predictions made at `time_s`, for the horizon later: position [i] of predictor i, NaN for none.
-  std::vector<Axes>& predictions(double time_s) {
-    if (end_ - first_ == kMost) ++first_;
-    Pending& p = pending_[end_++ % kMost];
-    p.dt = std::min(0.2, time_s - added_s_);
-    added_s_ = time_s;
-    p.time_s = time_s + horizon_s_;
-    return p.positions;
-  }
+  /// A sample has come: what was foreseen for the time since the one before is judged.
+  void observe(double time_s, const Axes& position);
+  /// Room for the predictions made at `time_s`, for the horizon later; a row a predictor, NaN for none.
+  Positions& predictions(double time_s);
 
   /// Mean squared distances, m^2; infinite before anything came true.
-  double fast(std::size_t i) const { return means_[i].weight > 0.1 ? means_[i].fast : INFINITY; }
-  double slow(std::size_t i) const { return means_[i].weight > 0.1 ? means_[i].slow : INFINITY; }
-  /// Seconds of experience.
-  double experience_s(std::size_t i) const { return means_[i].weight; }
+  double fast(int i) const { return age_[i] > kLeast_s ? fast_[i] : INFINITY; }
+  double slow(int i) const { return age_[i] > kLeast_s ? products_(i, i) : INFINITY; }
+  double experience_s(int i) const { return age_[i]; }
+
+  /// Of each predictor; all 0 when nothing is known of any.
+  const Weights& weights() const { return weights_; }
+  void weigh();
 
  private:
   static constexpr std::size_t kMost = 256;
-  static constexpr double kGap_s = 0.1;
+  static constexpr double kGap_s = 0.1, kLeast_s = 0.15;
   struct Pending {
     double time_s = 0, dt = 0;
-    std::vector<Axes> positions;
-  };
-  struct Mean {
-    double fast = 0, slow = 0, weight = 0;
+    Positions positions;
   };
 
-  void add(Mean& m, double squared, double dt) const {
-    if (!std::isfinite(squared)) {
-      m = {};
-      return;
-    }
-    m.weight += dt;
-    m.fast += std::min(1.0, dt / std::min(fast_s_, m.weight)) * (squared - m.fast);
-    m.slow += std::min(1.0, dt / std::min(slow_s_, m.weight)) * (squared - m.slow);
-  }
+  void judge(const Positions& errors, double dt);
 
-  double horizon_s_, fast_s_, slow_s_;
+  double horizon_s_, slow_s_, fast_s_;
   std::vector<Pending> pending_;
-  std::vector<Mean> means_;
   std::size_t first_ = 0, end_ = 0;
   double last_s_ = 0, added_s_ = 0;
   Axes last_ = Axes::Zero();
   bool seen_ = false;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostPredictors, kMostPredictors> products_;
+  Weights fast_, age_, weights_;
 };
 
 }  // namespace heartservo::servo

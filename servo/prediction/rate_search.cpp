@@ -98,20 +98,21 @@ void RateSearch::choose_period() {
 double RateSearch::match(double from, double expected) const {
   const int length = static_cast<int>(period_), at = static_cast<int>(std::lround(from));
   const int reach = std::max(2, static_cast<int>(0.18 * period_)), middle = static_cast<int>(std::lround(expected));
-  if (middle - reach < 0 || middle + reach + length > size_) return NAN;
+  const int low = std::max(0, middle - reach), high = std::min(size_ - length, middle + reach), count = high - low + 1;
+  if (middle < low || middle > high) return NAN;
   int best = 0;
   std::array<double, 2 * kLags> cost;
-  for (int i = 0; i <= 2 * reach; ++i) {
-    cost[static_cast<std::size_t>(i)] = unlike(at, middle - reach + i, length);
+  for (int i = 0; i < count; ++i) {
+    cost[static_cast<std::size_t>(i)] = unlike(at, low + i, length);
     if (cost[static_cast<std::size_t>(i)] < cost[static_cast<std::size_t>(best)]) best = i;
   }
   double fine = 0;
-  if (best > 0 && best < 2 * reach) {
+  if (best > 0 && best + 1 < count) {
     const double *c = &cost[static_cast<std::size_t>(best)], bend = c[-1] - 2 * c[0] + c[1];
     if (bend > 0) fine = std::clamp(0.5 * (c[-1] - c[1]) / bend, -0.5, 0.5);
   }
   // the comparison started at a whole step
-  return middle - reach + best + fine + (from - at);
+  return low + best + fine + (from - at);
 }
 
 void RateSearch::mark_slice() {

@@ -19,7 +19,7 @@ class RateSearch {
  public:
   static constexpr double kSlowestBeat_hz = 0.62, kFastestBeat_hz = 2.7;  ///< 37 to 162 a minute
   static constexpr double kSlowestBreath_hz = 0.12, kFastestBreath_hz = 0.54;
-  static constexpr double kShortest_s = 3.4;  ///< of motion, to search in; 4.2 for the slowest hearts
+  static constexpr double kShortest_s = 4.6;  ///< of motion, to search in
   static constexpr double kLongest_s = 8;
 
   RateSearch();
