@@ -52,7 +52,8 @@ class Axis {
         error_[k] += (1 - forget) * 8 * (off * off - error_[k]);
       }
     Step& now = steps_[static_cast<std::size_t>(count_ % kRing)];
-    for (int i = 0; i < kOrder; ++i) now.x[i] = past_[static_cast<std::size_t>(i)] - past_[static_cast<std::size_t>(i + 1)];
+    for (int i = 0; i < kOrder; ++i)
+      now.x[i] = past_[static_cast<std::size_t>(i)] - past_[static_cast<std::size_t>(i + 1)];
     now.learn = learn && count_ > kOrder;
     if (!now.learn) return;
     const Vector x = now.x / scale, Px = P_ * x;
@@ -105,7 +106,8 @@ class Autoregressive final : public MotionPredictor {
   void observe(const MotionSample& sample) override {
     if (!sample.position.allFinite() || !std::isfinite(sample.time_s)) return;
     if (seen_ > 0 && !(sample.time_s > time_s_)) return;
-    if (seen_ > 0 && seen_ < kFirst) step_s_ = seen_ == 1 ? sample.time_s - time_s_ : std::min(step_s_, sample.time_s - time_s_);
+    if (seen_ > 0 && seen_ < kFirst)
+      step_s_ = seen_ == 1 ? sample.time_s - time_s_ : std::min(step_s_, sample.time_s - time_s_);
     if (seen_ == kFirst - 1) {
       // that of a sample is never hit exactly: samples as they come make the grid
       step_s_ = std::max(step_s_, kShortestStep_s);

@@ -98,7 +98,8 @@ void BeatClock::advance(double dt) {
   }
   for (int guard = 0; dt > 0 && guard < 64; ++guard) {
     const double in_beat = wrapped(x_[0] - model_.anchor), s = systole_share();
-    const double left = diastole_ ? (in_beat < 0.5 * s ? 0 : 1 - in_beat) : s - (in_beat > 0.5 * (1 + s) ? in_beat - 1 : in_beat);
+    const double left =
+        diastole_ ? (in_beat < 0.5 * s ? 0 : 1 - in_beat) : s - (in_beat > 0.5 * (1 + s) ? in_beat - 1 : in_beat);
     const double rate = x_[1] * (diastole_ ? 1 + x_[2] : 1);
     const double until = std::max(0.0, left) / rate;
     if (until > dt) {

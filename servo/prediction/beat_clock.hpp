@@ -9,9 +9,9 @@
 namespace heartservo::servo {
 
 struct BeatModel {
-  double anchor = 0;      ///< phase at which systole begins, cycles
+  double anchor = 0;        ///< phase at which systole begins, cycles
   double systole_s = 0.35;  ///< 0: the whole beat stretches, and d is a stationary process in time
-  double softness = 0;    ///< in diastole the variance of d grows by this share of sigma^2 a second
+  double softness = 0;      ///< in diastole the variance of d grows by this share of sigma^2 a second
 };
 
 class BeatClock {

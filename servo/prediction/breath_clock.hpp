@@ -1,6 +1,6 @@
 #pragma once
-// The phase of breathing: a ventilator's, hence a steady rate that drifts. Kalman filter of phase (cycles) and rate (Hz),
-// measured through the motion's slope by the phase.
+// The phase of breathing: a ventilator's, hence a steady rate that drifts. Kalman filter of phase (cycles) and rate
+// (Hz), measured through the motion's slope by the phase.
 #include <Eigen/Core>
 #include <algorithm>
 

@@ -15,8 +15,8 @@ namespace heartservo::servo {
 struct FourierOptions {
   int respiration_harmonics = 2;
   int cardiac_harmonics = 12;
-  int sidebands = 12;        ///< cardiac harmonics that breathing modulates; not more than there are
-  double memory_s = 40;      ///< time constant of forgetting
+  int sidebands = 12;    ///< cardiac harmonics that breathing modulates; not more than there are
+  double memory_s = 40;  ///< time constant of forgetting
   double respiration_m = 4e-3, cardiac_m = 3e-3, sideband_m = 3e-4;  ///< expected size; of the n-th harmonic, 1/n^2
 };
 
@@ -54,9 +54,9 @@ class FourierMotion {
   FourierOptions options_;
   double noise_m_ = 3e-5;
   int cardiac_ = 0, sidebands_ = 0, columns_ = 0, columns_max_ = 0;
-  Eigen::VectorXi n_, m_;                            // per pair of columns: multiples of the heart's and breath's phase
-  Eigen::Matrix<double, Eigen::Dynamic, 3> a_;       // coefficients, a column an axis
-  Eigen::MatrixXd P_;                                // their covariance, in units of the measurement's variance
+  Eigen::VectorXi n_, m_;                       // per pair of columns: multiples of the heart's and breath's phase
+  Eigen::Matrix<double, Eigen::Dynamic, 3> a_;  // coefficients, a column an axis
+  Eigen::MatrixXd P_;                           // their covariance, in units of the measurement's variance
   Eigen::VectorXd Ph_;
 };
 

@@ -8,6 +8,7 @@ namespace heartservo::servo {
 namespace {
 
 constexpr double kWatched_s = 0.064;  // the horizon at which the model must be worth its name
+constexpr double kLost = 0.4;         // of the mean squared distance that the heart moves meanwhile
 
 }  // namespace
 
@@ -26,7 +27,7 @@ void Harmonic::observe(const MotionSample& sample) {
   plain_->observe(sample);
   time_s_ = sample.time_s;
   seen_ = true;
-  watch();
+  watch(position);
 }
 
 Prediction Harmonic::predict(double time_s) const {
@@ -45,14 +46,14 @@ Prediction Harmonic::predict(double time_s) const {
   return fallback_ ? plain_->predict(time_s) : p;
 }
 
-// Lost: for a while worse than a constant acceleration.
-void Harmonic::watch() {
+// Lost: for a while not much better than the last position, at a horizon over which the heart has moved.
+void Harmonic::watch(const FourierMotion::Axes& position) {
   auto& foreseen = errors_.predictions(time_s_);
   foreseen.row(0).setConstant(NAN);
   if (tracker_.locked()) foreseen.row(0) = tracker_.predict(time_s_ + errors_.horizon_s()).position;
-  foreseen.row(1) = plain_->predict(time_s_ + errors_.horizon_s()).position.transpose();
-  if (tracker_.locked() && errors_.experience_s(0) > 1 && errors_.fast(0) > 1.5 * errors_.fast(1) &&
-      errors_.slow(0) > errors_.slow(1)) {
+  foreseen.row(1) = position;
+  if (tracker_.locked() && errors_.experience_s(0) > 1 && errors_.fast(0) > kLost * errors_.fast(1) &&
+      errors_.slow(0) > kLost * errors_.slow(1)) {
     tracker_.search_again();
     errors_.forget();
   }

@@ -17,7 +17,7 @@ class Harmonic final : public MotionPredictor {
   bool locked() const { return tracker_.locked(); }
 
  private:
-  void watch();
+  void watch(const FourierMotion::Axes& position);
 
   mutable HarmonicTracker tracker_;  // predicting writes into its workspace
   std::unique_ptr<MotionPredictor> plain_;

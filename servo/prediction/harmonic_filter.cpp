@@ -78,7 +78,8 @@ void HarmonicFilter::observe(double time_s, const Axes& position, const Axes& no
   motion_.slopes(h_, by_heart, by_breath);
   const double share = motion_.variance(h_);
   // What the coefficients do not explain stays for a while: many samples tell no more about it than one.
-  const double correlated = 1 + (kFirstCorrelation_s * std::exp(-(time_s - started_s_) / kSettling_s)) / std::max(dt, 1e-3);
+  const double correlated =
+      1 + (kFirstCorrelation_s * std::exp(-(time_s - started_s_) / kSettling_s)) / std::max(dt, 1e-3);
   const Axes r = noise.array() * (1 + share) + correlated * (residual_ - noise).array().max(0.0);
   const double age = time_s - started_s_;
   if (age > 3 && age - dt <= 3) motion_.open(motion_.cardiac_harmonics(), false);
@@ -90,7 +91,8 @@ void HarmonicFilter::observe(double time_s, const Axes& position, const Axes& no
     if (std::abs(near_zero(clock.phase() - phase)) > 0.05) clock.set_phase(phase);
     for (int j = 0; j < 3; ++j) {
       const double e = innovation_[j] - by_heart[j] * near_zero(clock.phase() - phase);
-      const double s = by_heart[j] * by_heart[j] * clock.phase_variance() + r[j] + by_breath[j] * by_breath[j] * breath_.phase_variance();
+      const double s = by_heart[j] * by_heart[j] * clock.phase_variance() + r[j] +
+                       by_breath[j] * by_breath[j] * breath_.phase_variance();
       log_likelihood -= 0.5 * (std::min(e * e / s, 25.0) + std::log(s / r[j]));
       clock.update(e, by_heart[j], s - by_heart[j] * by_heart[j] * clock.phase_variance());
     }
@@ -138,7 +140,8 @@ void HarmonicFilter::learn() {
     const Seen& s = seen_[learnt_++ % kSeen];
     const double share = (s.time_s - from_.time_s) / (to_.time_s - from_.time_s);
     motion_.basis(from_.phase + share * (to_.phase - from_.phase), s.breath, h_);
-    const double dt = learnt_ > 1 && learnt_ - 2 + kSeen > seen_end_ ? s.time_s - seen_[(learnt_ - 2) % kSeen].time_s : 0;
+    const double dt =
+        learnt_ > 1 && learnt_ - 2 + kSeen > seen_end_ ? s.time_s - seen_[(learnt_ - 2) % kSeen].time_s : 0;
     motion_.update(h_, s.position - motion_.value(h_), 1,
                    dt * std::clamp(40 / (0.5 * (s.time_s - started_s_) + 2), 1.0, 20.0));
   }

@@ -66,13 +66,17 @@ void HarmonicTracker::observe(double time_s, const Axes& position, const Axes& v
 }
 
 void HarmonicTracker::observe_beat(double r_peak_s) {
-  if (!options_.use_beats || !std::isfinite(r_peak_s) || (beat_count_ > 0 && !(r_peak_s > beats_[(beat_count_ - 1) % beats_.size()]))) return;
+  if (!options_.use_beats || !std::isfinite(r_peak_s) ||
+      (beat_count_ > 0 && !(r_peak_s > beats_[(beat_count_ - 1) % beats_.size()])))
+    return;
   beats_[beat_count_++ % beats_.size()] = r_peak_s;
 }
 
 void HarmonicTracker::slice() {
   switch (stage_) {
-    case Stage::GATHER: gather(); break;
+    case Stage::GATHER:
+      gather();
+      break;
     case Stage::SEARCH:
       if (!search_.step() && !search_.step()) break;
       stage_ = search_.found() ? Stage::TEACH : Stage::GATHER;
@@ -81,9 +85,14 @@ void HarmonicTracker::slice() {
       next_ = first_after(search_.first_mark_s() - 0.4 / search_.beat_hz());
       filter_.start(sample(next_).position, std::sqrt(sample(next_).noise.mean()), search_.beat_hz(), period_s_);
       break;
-    case Stage::TEACH: teach(); break;
-    case Stage::CATCH_UP: catch_up(); break;
-    case Stage::FOLLOW: break;
+    case Stage::TEACH:
+      teach();
+      break;
+    case Stage::CATCH_UP:
+      catch_up();
+      break;
+    case Stage::FOLLOW:
+      break;
   }
 }
 

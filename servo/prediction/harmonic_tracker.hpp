@@ -63,7 +63,8 @@ class HarmonicTracker {
   HarmonicFilter filter_;
   Stage stage_ = Stage::GATHER;
   std::vector<Sample> samples_;
-  std::size_t begin_ = 0, end_ = 0, next_ = 0;  // counts of samples: the oldest kept, the newest, the next to be replayed
+  std::size_t begin_ = 0, end_ = 0,
+              next_ = 0;  // counts of samples: the oldest kept, the newest, the next to be replayed
   double period_s_ = 0, last_s_ = 0, wait_until_s_ = 0;
   bool restarted_ = false;
   long count_ = 0;

@@ -2,10 +2,10 @@
 // How well several predictors foresaw what then came, at one horizon, and what mixture of them would have done best.
 //
 // Each prediction is kept until a sample reaches the time it was for; the errors then enter running means of their
-// products, E[e_i . e_j]. The weights that add up to 1 and leave least are C^-1 1 / (1' C^-1 1) (Bates and Granger, "The
-// combination of forecasts", 1969), here without negative ones. The samples' own noise adds the same to every product
-// and does not move the weights. What lies between two samples is taken from the straight line between them. Nothing is
-// allocated after construction.
+// products, E[e_i . e_j]. The weights that add up to 1 and leave least are C^-1 1 / (1' C^-1 1) (Bates and Granger,
+// "The combination of forecasts", 1969), here without negative ones. The samples' own noise adds the same to every
+// product and does not move the weights. What lies between two samples is taken from the straight line between them.
+// Nothing is allocated after construction.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>

@@ -22,6 +22,7 @@ class Mixture final : public MotionPredictor {
     members_.push_back(make_hold(options));
     members_.push_back(make_constant_acceleration(options));
     members_.push_back(make_autoregressive(options));
+    members_.push_back(make_analogue(options));
     members_.push_back(std::make_unique<Harmonic>(options, false, false));
     members_.push_back(std::make_unique<Harmonic>(options, true, false));
     for (const double horizon : kHorizons_s) errors_.emplace_back(horizon, kMembers);
@@ -86,7 +87,7 @@ class Mixture final : public MotionPredictor {
   }
 
  private:
-  static constexpr int kMembers = 6, kEcg = 5;
+  static constexpr int kMembers = 7, kEcg = 6;
 
   MotionPredictor& member(int i) const { return *members_[static_cast<std::size_t>(i)]; }
   bool takes_part(int i) const { return i != kEcg || beats_; }
@@ -100,7 +101,8 @@ class Mixture final : public MotionPredictor {
     lower = upper > lower ? upper - 1 : upper;
     const HorizonErrors &a = errors_[lower], &b = errors_[upper];
     if (lower == upper) return a.weights();
-    const double share = std::clamp(std::log(horizon / a.horizon_s()) / std::log(b.horizon_s() / a.horizon_s()), 0.0, 1.0);
+    const double share =
+        std::clamp(std::log(horizon / a.horizon_s()) / std::log(b.horizon_s() / a.horizon_s()), 0.0, 1.0);
     return (1 - share) * a.weights() + share * b.weights();
   }
 

@@ -36,7 +36,8 @@ void RateSearch::begin(const UniformTrack& track, std::span<const double> r_peak
   begin(track);
   stage_ = Stage::DONE;
   for (const double peak : r_peaks_s)
-    if (peak >= begin_s_ && end_mark_ < kMarks) marks_[static_cast<std::size_t>(end_mark_++)] = (peak - begin_s_) / step_s_;
+    if (peak >= begin_s_ && end_mark_ < kMarks)
+      marks_[static_cast<std::size_t>(end_mark_++)] = (peak - begin_s_) / step_s_;
   if (end_mark_ < 4) return;
   period_ = (marks_[static_cast<std::size_t>(end_mark_ - 1)] - marks_[0]) / (end_mark_ - 1);
   begin_breath();
@@ -44,10 +45,17 @@ void RateSearch::begin(const UniformTrack& track, std::span<const double> r_peak
 
 bool RateSearch::step() {
   switch (stage_) {
-    case Stage::LAGS: lag_slice(); break;
-    case Stage::MARKS: mark_slice(); break;
-    case Stage::BREATH: breath_slice(); break;
-    case Stage::DONE: break;
+    case Stage::LAGS:
+      lag_slice();
+      break;
+    case Stage::MARKS:
+      mark_slice();
+      break;
+    case Stage::BREATH:
+      breath_slice();
+      break;
+    case Stage::DONE:
+      break;
   }
   return stage_ == Stage::DONE;
 }
@@ -61,8 +69,9 @@ void RateSearch::lag_slice() {
   for (int n = 0; n < 8 && lag_ <= longest_; ++n, ++lag_) {
     const int length = end - begin - lag_;
     // twice the power of both stretches that are compared: 1 where they have nothing in common
-    const double power = (curve_.middleRows(begin, length).squaredNorm() +
-                          curve_.middleRows(begin + lag_, length).squaredNorm()) / length;
+    const double power =
+        (curve_.middleRows(begin, length).squaredNorm() + curve_.middleRows(begin + lag_, length).squaredNorm()) /
+        length;
     difference_[static_cast<std::size_t>(lag_)] = unlike(begin, begin + lag_, length) / std::max(power, 1e-30);
   }
   if (lag_ > longest_) choose_period();
@@ -153,8 +162,8 @@ double RateSearch::beat_phase(double time_s) const {
 void RateSearch::breath_slice() {
   constexpr int kParameters = 13;
   using Vector = Eigen::Matrix<double, kParameters, 1>;
-  const double rate =
-      kSlowestBreath_hz * std::pow(kFastestBreath_hz / kSlowestBreath_hz, static_cast<double>(breath_) / (kBreaths - 1));
+  const double rate = kSlowestBreath_hz *
+                      std::pow(kFastestBreath_hz / kSlowestBreath_hz, static_cast<double>(breath_) / (kBreaths - 1));
   Eigen::Matrix<double, kParameters, kParameters> N = Eigen::Matrix<double, kParameters, kParameters>::Zero();
   Eigen::Matrix<double, kParameters, 3> b = Eigen::Matrix<double, kParameters, 3>::Zero();
   double power = 0;

@@ -34,6 +34,7 @@ std::unique_ptr<MotionPredictor> make_hold(const PredictorOptions& options);
 std::unique_ptr<MotionPredictor> make_constant_velocity(const PredictorOptions& options);
 std::unique_ptr<MotionPredictor> make_constant_acceleration(const PredictorOptions& options);
 std::unique_ptr<MotionPredictor> make_autoregressive(const PredictorOptions& options);
+std::unique_ptr<MotionPredictor> make_analogue(const PredictorOptions& options);
 std::unique_ptr<MotionPredictor> make_harmonic(const PredictorOptions& options);
 std::unique_ptr<MotionPredictor> make_harmonic_ecg(const PredictorOptions& options);
 std::unique_ptr<MotionPredictor> make_mixture(const PredictorOptions& options);
