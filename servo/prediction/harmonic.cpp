@@ -14,9 +14,8 @@ constexpr double kLost = 0.4;         // of the mean squared distance that the h
 
 Harmonic::Harmonic(const PredictorOptions& options, bool use_beats, bool fallback)
     : tracker_(harmonic_options(options, use_beats)),
-      plain_(make_constant_acceleration(options)),
-      errors_(kWatched_s, 2),
-      fallback_(fallback) {}
+      plain_(fallback ? make_autoregressive(options) : nullptr),
+      errors_(kWatched_s, 2) {}
 
 void Harmonic::observe(const MotionSample& sample) {
   if (!sample.position.allFinite() || !std::isfinite(sample.time_s)) return;
@@ -24,7 +23,7 @@ void Harmonic::observe(const MotionSample& sample) {
   const FourierMotion::Axes position = sample.position.transpose();
   errors_.observe(sample.time_s, position);
   tracker_.observe(sample.time_s, position, sample.covariance.diagonal().transpose());
-  plain_->observe(sample);
+  if (plain_) plain_->observe(sample);
   time_s_ = sample.time_s;
   seen_ = true;
   watch(position);
@@ -43,7 +42,7 @@ Prediction Harmonic::predict(double time_s) const {
       return p;
     }
   }
-  return fallback_ ? plain_->predict(time_s) : p;
+  return plain_ ? plain_->predict(time_s) : p;
 }
 
 // Lost: for a while not much better than the last position, at a horizon over which the heart has moved.

@@ -7,7 +7,7 @@ namespace heartservo::servo {
 class Harmonic final : public MotionPredictor {
  public:
   /// `use_beats`: R peaks set the phase. Without `fallback` nothing is predicted while the phases are not locked, with
-  /// it a constant acceleration is.
+  /// it an autoregressive one does.
   Harmonic(const PredictorOptions& options, bool use_beats, bool fallback);
 
   void observe(const MotionSample& sample) override;
@@ -22,7 +22,6 @@ class Harmonic final : public MotionPredictor {
   mutable HarmonicTracker tracker_;  // predicting writes into its workspace
   std::unique_ptr<MotionPredictor> plain_;
   HorizonErrors errors_;
-  bool fallback_;
   double time_s_ = 0;
   bool seen_ = false;
 };

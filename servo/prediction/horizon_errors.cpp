@@ -10,6 +10,7 @@ HorizonErrors::HorizonErrors(double horizon_s, int predictors, double slow_s, do
   products_.setZero(predictors, predictors);
   fast_.setZero(predictors);
   age_.setZero(predictors);
+  largest_.setZero(predictors);
   weights_.setZero(predictors);
 }
 
@@ -19,6 +20,7 @@ void HorizonErrors::forget() {
   products_.setZero();
   fast_.setZero();
   age_.setZero();
+  largest_.setZero();
   weights_.setZero();
 }
 
@@ -55,6 +57,7 @@ void HorizonErrors::judge(const Positions& errors, double dt) {
       continue;
     }
     age_[i] += dt;
+    largest_[i] = std::max(errors.row(i).norm(), largest_[i] * (1 - dt / kLargest_s));
     fast_[i] += std::min(1.0, dt / std::min(fast_s_, age_[i])) * (errors.row(i).squaredNorm() - fast_[i]);
     for (int j = 0; j <= i; ++j) {
       if (!(age_[j] > 0)) continue;

@@ -35,6 +35,8 @@ class HorizonErrors {
   /// Mean squared distances, m^2; infinite before anything came true.
   double fast(int i) const { return age_[i] > kLeast_s ? fast_[i] : INFINITY; }
   double slow(int i) const { return age_[i] > kLeast_s ? products_(i, i) : INFINITY; }
+  /// The largest distance of late, m; forgotten with a time constant of 20 s. 0 before anything came true.
+  double largest(int i) const { return largest_[i]; }
   double experience_s(int i) const { return age_[i]; }
 
   /// Of each predictor; all 0 when nothing is known of any.
@@ -43,7 +45,7 @@ class HorizonErrors {
 
  private:
   static constexpr std::size_t kMost = 256;
-  static constexpr double kGap_s = 0.1, kLeast_s = 0.15;
+  static constexpr double kGap_s = 0.1, kLargest_s = 20, kLeast_s = 0.4;
   struct Pending {
     double time_s = 0, dt = 0;
     Positions positions;
@@ -58,7 +60,7 @@ class HorizonErrors {
   Axes last_ = Axes::Zero();
   bool seen_ = false;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostPredictors, kMostPredictors> products_;
-  Weights fast_, age_, weights_;
+  Weights fast_, age_, largest_, weights_;
 };
 
 }  // namespace heartservo::servo

@@ -17,7 +17,7 @@ namespace heartservo::servo {
 
 class RateSearch {
  public:
-  static constexpr double kSlowestBeat_hz = 0.62, kFastestBeat_hz = 2.7;  ///< 37 to 162 a minute
+  static constexpr double kSlowestBeat_hz = 0.62, kFastestBeat_hz = 3;  ///< 37 to 180 a minute
   static constexpr double kSlowestBreath_hz = 0.12, kFastestBreath_hz = 0.54;
   static constexpr double kShortest_s = 4.6;  ///< of motion, to search in
   static constexpr double kLongest_s = 8;

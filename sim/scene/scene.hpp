@@ -69,8 +69,7 @@ struct TargetOptions {
 
 /// Engines by name.
 struct EngineOptions {
-  std::string tracker = "esm", estimator = "landmark_refined", predictor = "constant_velocity",
-              controller = "ibvs_feedforward";
+  std::string tracker = "esm", estimator = "landmark_refined", predictor = "mixture", controller = "ibvs_feedforward";
   void fields(FieldVisitor& v);
 };
 
