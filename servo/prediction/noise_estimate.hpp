@@ -4,6 +4,7 @@
 // the estimate is too large. A running median keeps it from single jumps.
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace heartservo::servo {
@@ -39,7 +40,7 @@ class NoiseEstimate {
   Axes variance() const { return (median_.array() / 0.6745).square() / 20; }
 
  private:
-  std::array<Axes, 4> p_{};
+  std::array<Axes, 4> p_{Axes::Zero(), Axes::Zero(), Axes::Zero(), Axes::Zero()};
   Axes median_ = Axes::Constant(1e-4);
   double time_s_ = 0, dt_ = 0;
   long count_ = 0, steps_ = 0;
