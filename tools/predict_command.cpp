@@ -115,7 +115,7 @@ Report report_of(const nlohmann::json& summary, const std::vector<std::string>& 
     for (const auto& h : p["horizons"])
       if (std::abs(h["ms"].get<double>() - 1e3 * shown_s) < 1e-6 && !h["rms_mm"]["norm"].is_null())
         return h["rms_mm"]["norm"].get<double>();
-    return INFINITY;
+    return static_cast<double>(INFINITY);
   };
   const auto& all = summary["predictors"];
   const auto best = std::min_element(all.begin(), all.end(), [&](auto& a, auto& b) { return at(a) < at(b); });
