@@ -283,7 +283,10 @@ StereoMatch StereoMatcher::match(const cv::Mat& left, const cv::Mat& right, cons
   const double window_px = share * side_px;
   w.G = G_plane_patch * Eigen::Vector3d(share, share, 1).asDiagonal();
   w.centre = w.G.col(2).hnormalized();
-  if (!w.centre.allFinite() || left.type() != CV_8UC1 || right.type() != CV_8UC1) return match;
+  const cv::Size size(w.camera.left.width, w.camera.left.height);
+  for (const cv::Mat* picture : {&left, &right})
+    if (picture->size() != size || picture->type() != CV_8UC1) return match;
+  if (!w.centre.allFinite()) return match;
   w.left_pyramid.build(left, cv::Rect(0, 0, left.cols, left.rows), kLevels);
   w.right_pyramid.build(right, cv::Rect(0, 0, right.cols, right.rows), kLevels);
   const Eigen::Vector3d& t = w.camera.T_right_left.translation();

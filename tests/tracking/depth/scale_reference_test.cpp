@@ -33,9 +33,9 @@ TEST(ScaleReference, ImpossibleDistancesAreNamed) {
     return problems.empty() ? std::string() : problems[0];
   };
   EXPECT_EQ(problem({0.05, 1e-3}), "");
-  for (const double depth : {0.0, -0.05, NAN, INFINITY})
+  for (const double depth : std::initializer_list<double>{0, -0.05, NAN, INFINITY})
     EXPECT_NE(problem({depth, 1e-3}).find("must be positive"), std::string::npos) << depth;
-  for (const double sigma : {0.0, -1e-3, NAN, 0.04})
+  for (const double sigma : std::initializer_list<double>{0, -1e-3, NAN, 0.04})
     EXPECT_NE(problem({0.05, sigma}).find("standard deviation"), std::string::npos) << sigma;
   EXPECT_NE(problem({0.05, 1e-3, {5, 0}}).find("edge"), std::string::npos);
 }
