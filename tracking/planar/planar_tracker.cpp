@@ -336,6 +336,11 @@ Track PlanarTracker::track(const Frame& frame) {
   const Eigen::Matrix3d K = intrinsics(camera_);
   track.corners = corners_of(last_.G_plane_patch);
   track.target = pixel_of(last_.G_plane_patch, aligner_->bent(last_, Eigen::Vector2d::Zero()));
+  for (int i = 0; i < kGridSide * kGridSide; ++i) {
+    const auto along = [](int k) { return (2 * k + 1.0) / kGridSide - 1; };
+    const Eigen::Vector2d point(along(i % kGridSide) * patch_corners_[2].x(), along(i / kGridSide) * patch_corners_[2].y());
+    track.points[static_cast<std::size_t>(i)] = pixel_of(last_.G_plane_patch, aligner_->bent(last_, point));
+  }
   track.gain = last_.gain;
   track.bias = last_.bias;
   track.H_current_reference = to_sl3(K * last_.G_plane_patch * reference_.G_plane_patch.inverse() * K.inverse());
