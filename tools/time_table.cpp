@@ -13,7 +13,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/table/csv_rows.hpp"
+#include "tracking/settings/csv_rows.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_reader.hpp"
 
@@ -83,7 +83,7 @@ void TimeTable::write_csv(const std::filesystem::path& file) const {
 }
 
 TimeTable TimeTable::read_csv(const std::filesystem::path& file) {
-  sim::CsvRows rows(file, "a header that begins with time_s");
+  CsvRows rows(file, "a header that begins with time_s");
   try {
     TimeTable table(rows.names(), rows.rows_ahead());
     std::vector<double> row(table.names_.size());
