@@ -27,7 +27,7 @@ class CsvRows {
   /// NaN for an empty cell. Throws InputError for what is no number.
   double number(std::size_t column) const;
 
-  /// Of the row in the file, from 1.
+  /// Of the row (or header), counted from 1.
   int line() const { return line_; }
 
   /// No more rows than this are left to come.
