@@ -20,12 +20,14 @@ constexpr double kLookBack = 1.66, kLookBackShare = 0.4;
 constexpr double kTwave_s = 0.36, kTwaveShare = 0.5;
 constexpr std::size_t kCandidates = 64;
 
-template <std::size_t N>
-double median(std::array<double, N> values, std::size_t count) {
-  const auto end = values.begin() + static_cast<std::ptrdiff_t>(std::min(count, N));
-  if (end == values.begin()) return 0;
-  std::sort(values.begin(), end);
-  return values[static_cast<std::size_t>(end - values.begin()) / 2];
+// Of the first `count` values; 0 for none.
+double median(std::array<double, 8> values, std::size_t count) {
+  count = std::min(count, values.size());
+  if (count == 0) return 0;
+  for (std::size_t i = count; i < values.size(); ++i) values[i] = INFINITY;  // they sort to the end
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ void Scene::fields(FieldVisitor& v) {
   v.group("camera", "the endoscope's camera", camera);
   v.group("recording", "frames from disk instead of the simulated heart", recording);
   v.group("motion", "how the simulated heart moves", motion);
+  v.group("ecg", "an ECG beside the frames, for predictors that know the heartbeat", ecg);
   v.group("surface", "shape, deformation and landmarks of the simulated heart", surface);
   v.group("target", "what the loop follows on the simulated heart", target);
   v.group("picture", "light, lens, sensor and texture of the simulated picture", picture);
@@ -70,7 +71,10 @@ std::vector<std::string> Scene::validate() const {
     problems.emplace_back("loop.tip.use_marker needs tool.marker_side_m above 0");
   if (is_recorded() && engines.estimator != "assumed_depth")
     problems.emplace_back("recorded frames have no landmark of known size: engines.estimator must be assumed_depth");
+  if (is_recorded() && ecg.source == "simulated")
+    problems.emplace_back("ecg.source: recorded frames have no simulated heart; give a recorded ECG");
   add(motion.validate());
+  add(ecg.validate());
   add(surface.validate());
   add(picture.validate());
   add(tool.validate());

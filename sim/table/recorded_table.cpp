@@ -9,6 +9,7 @@
 #include "sim/endoscope/tool_view.hpp"
 #include "sim/robot/cartesian_robot.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/table/heart_beats.hpp"
 #include "sim/table/point_tracks.hpp"
 #include "sim/table/table.hpp"
 #include "tracking/frames/open_source.hpp"
@@ -46,6 +47,8 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   double marker_side_m() const override { return tool_.marker_side_m; }
   std::string reference() const override { return reference_ ? reference_->file : "tracked"; }
   std::string reference_point() const override { return reference_ ? reference_->point.name : ""; }
+
+  std::unique_ptr<servo::EcgSource> ecg() const override { return heart_ecg(scene_, {}, 0); }
 
   HandPicked picked() const override {
     const auto corners = marker_corners(tool_, start_tip_);
