@@ -32,6 +32,9 @@ double largest(std::span<const double> values) {
   return largest;
 }
 
+// Less is rounding: a nanometre.
+constexpr double kStill_m = 1e-9;
+
 // The cut-off that leaves the acceleration the smallest error: signal that is cut away above it, noise that passes
 // below it, both by the spectrum (averaged over half a hertz, since single values scatter).
 double best_cutoff(const Spectrum& spectrum, double noise) {
@@ -107,7 +110,8 @@ void require_motion(const MotionRecord& record, const UniformMotion& motion) {
   if (motion.rate_hz < 10)
     throw InputError(
         fmt::format("{}: {:.3g} rows a second; a heart's motion needs 10 or more", record.file, motion.rate_hz));
-  if (std::all_of(motion.axis.begin(), motion.axis.end(), [](const auto& axis) { return peak_to_peak(axis) == 0; }))
+  if (std::all_of(motion.axis.begin(), motion.axis.end(),
+                  [](const auto& axis) { return peak_to_peak(axis) < kStill_m; }))
     throw InputError(fmt::format("{}:{}: the position is the same in every row: there is no motion to analyse",
                                  record.file, record.line.front()));
 }
@@ -131,7 +135,13 @@ MotionAnalysis analyse(const MotionRecord& record, const std::vector<Eigen::Vect
   if (options.cutoff_hz > 0.45 * m.motion.rate_hz)
     throw ConfigError(fmt::format("a cut-off of {} Hz is too high for {}: {:.4g} rows a second hold up to {:.4g} Hz",
                                   options.cutoff_hz, record.file, m.motion.rate_hz, 0.45 * m.motion.rate_hz));
-  for (std::size_t a = 0; a < 3; ++a) m.spectra[a] = welch(m.motion.axis[a], m.motion.rate_hz, options.segment_s);
+  for (std::size_t a = 0; a < 3; ++a) {
+    auto& axis = m.motion.axis[a];
+    const bool still = peak_to_peak(axis) < kStill_m;
+    if (still) std::fill(axis.begin(), axis.end(), axis[0]);
+    m.spectra[a] = welch(axis, m.motion.rate_hz, options.segment_s);
+    if (still) std::fill(m.spectra[a].density.begin(), m.spectra[a].density.end(), 0.0);
+  }
   m.rhythm = find_rhythm(m.motion, m.spectra);
   for (const auto& [name, f] : {std::pair("heartbeat", m.rhythm.heart_hz), {"breathing", m.rhythm.respiration_hz}})
     if (f == 0) m.notes.push_back(fmt::format("no line that could be the {} stands out", name));

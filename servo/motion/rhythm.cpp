@@ -93,15 +93,25 @@ UniformMotion without_breath(UniformMotion motion, const Rhythm& rhythm, double 
 }  // namespace
 
 double mean_frequency(const UniformMotion& motion, double f, int harmonics, double half_width) {
+  // towards its ends the record is faded out over two periods: beyond them nothing is known
+  const double n = static_cast<double>(motion.size()), ramp = std::min(2 * motion.rate_hz / f, 0.25 * n);
+  std::array<std::vector<double>, 3> faded = motion.axis;
+  for (auto& axis : faded) {
+    double mean = 0;
+    for (const double v : axis) mean += v / n;
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+      const double from_end = std::min(static_cast<double>(i), n - 1 - static_cast<double>(i)) / ramp;
+      axis[i] = (axis[i] - mean) * (from_end < 1 ? std::pow(std::sin(0.5 * std::numbers::pi * from_end), 2) : 1);
+    }
+  }
   double sum = 0, weight = 0;
   for (int k = 1; k <= harmonics; ++k)
-    for (const auto& axis : motion.axis) {
+    for (const auto& axis : faded) {
       const double low = (k - half_width) * f, high = (k + half_width) * f;
       if (high > 0.45 * motion.rate_hz) continue;
       const AnalyticBand band = analytic_band(axis, motion.rate_hz, low, high);
-      const auto edge = static_cast<std::size_t>(0.5 * motion.rate_hz / f);  // half a period is spoilt at either end
       std::complex<double> turn = 0;
-      for (std::size_t i = edge; i + 1 + edge < band.real.size(); ++i)
+      for (std::size_t i = 0; i + 1 < band.real.size(); ++i)
         turn += std::complex(band.real[i + 1], band.imaginary[i + 1]) * std::complex(band.real[i], -band.imaginary[i]);
       const double found = std::arg(turn) * motion.rate_hz / (2 * std::numbers::pi);
       const double power = std::abs(turn);

@@ -76,7 +76,7 @@ TEST_F(Ecg, Annotations) {
   bytes += std::string("(N\0\0", 4);
   bytes += in_16({59 << 10, 1, 464, 5 << 10 | 31, 0});
   const auto file = folder_.write("r.atr", bytes);
-  EXPECT_EQ(read_annotated_beats(file, 100), (std::vector<double>{1, 1.05 + (65536 + 464 + 31) / 100.0}));
+  EXPECT_EQ(read_annotated_beats(file, 100), (std::vector<double>{1, (105 + 65536 + 464 + 31) / 100.0}));
   const auto cut = folder_.write("cut.atr", bytes.substr(0, 6));
   EXPECT_NE(message_of<InputError>([&] { read_annotated_beats(cut, 100); }).find("cut.atr: ends within"),
             std::string::npos);
