@@ -94,7 +94,6 @@ void expect_the_scene(const char* name, std::uint64_t seed) {
 }
 
 TEST(MotionAnalysisOfThePig, GivesBackTheScene) { expect_the_scene("pig_2007", 1); }
-TEST(MotionAnalysisOfThePig, GivesBackAnotherSeed) { expect_the_scene("pig_2007", 4); }
 TEST(MotionAnalysisOfThePig, GivesBackTheSharpHeart) { expect_the_scene("pig_2007_sharp", 1); }
 
 }  // namespace
