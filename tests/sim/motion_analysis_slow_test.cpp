@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/scene/scene.hpp"
@@ -49,7 +50,9 @@ double mean_rate(const Phase& phase, double duration_s) {
   return turns / duration_s;
 }
 
-void expect_the_scene(const char* name, std::uint64_t seed) {
+// `as_printed`: the plate's motion has Table 3's densities. The tissue's own waves, drawn by the seed, add up to 0.8 mm
+// of beat to them, which for some seeds changes the share of a line along z by several points.
+void expect_the_scene(const char* name, std::uint64_t seed, bool as_printed) {
   Scene scene = load_scene(std::string(HEARTSERVO_SOURCE_DIR "/scenes/") + name + ".yaml");
   scene.seed = static_cast<int>(seed);
   scene.show_tool = false;
@@ -71,10 +74,17 @@ void expect_the_scene(const char* name, std::uint64_t seed) {
     seen[static_cast<std::size_t>(row)] = true;
     std::printf("  %-14s %.3f Hz  %5.1f %5.1f %5.1f %%\n", name_of(line).c_str(), line.frequency_hz,
                 line.density_percent.x(), line.density_percent.y(), line.density_percent.z());
-    for (int a = 0; a < 3; ++a)
-      EXPECT_NEAR(line.density_percent[a],
-                  profile::kDensityPercent[static_cast<std::size_t>(a)][static_cast<std::size_t>(row)], 2)
-          << name_of(line) << " axis " << a;
+    const auto same = std::find_if(truth.lines.begin(), truth.lines.end(), [&](const MotionLine& other) {
+      return other.family == line.family && other.harmonic == line.harmonic;
+    });
+    ASSERT_NE(same, truth.lines.end()) << name_of(line);
+    for (int a = 0; a < 3; ++a) {
+      EXPECT_NEAR(line.density_percent[a], same->density_percent[a], 1) << name_of(line) << " axis " << a;
+      if (as_printed)
+        EXPECT_NEAR(line.density_percent[a],
+                    profile::kDensityPercent[static_cast<std::size_t>(a)][static_cast<std::size_t>(row)], 2)
+            << name_of(line) << " axis " << a;
+    }
   }
   EXPECT_EQ(seen, (std::array<bool, 6>{true, true, true, true, true, true}));
   for (std::size_t a = 0; a < 3; ++a) {
@@ -93,8 +103,9 @@ void expect_the_scene(const char* name, std::uint64_t seed) {
   }
 }
 
-TEST(MotionAnalysisOfThePig, GivesBackTheScene) { expect_the_scene("pig_2007", 1); }
-TEST(MotionAnalysisOfThePig, GivesBackTheSharpHeart) { expect_the_scene("pig_2007_sharp", 1); }
+TEST(MotionAnalysisOfThePig, GivesBackTheScene) { expect_the_scene("pig_2007", 1, true); }
+TEST(MotionAnalysisOfThePig, GivesBackAnotherSeed) { expect_the_scene("pig_2007", 4, false); }
+TEST(MotionAnalysisOfThePig, GivesBackTheSharpHeart) { expect_the_scene("pig_2007_sharp", 1, false); }
 
 }  // namespace
 }  // namespace heartservo::sim
