@@ -51,6 +51,11 @@ void Loop::perceive(LoopRecord& record) {
   if (stages_.marker_estimator) record.marker = stages_.marker_estimator->estimate(record.marker_track);
   record.encoders = robot_.read(record.frame.time_s);
   record.tip = tip_estimator_.estimate(record.encoders, record.marker);
+  if (stages_.ecg)
+    stages_.ecg->advance(record.frame.time_s, [&](const RPeak& peak) {
+      stages_.predictor->observe_beat(peak.time_s);
+      record.r_peak_s = peak.time_s;
+    });
   if (record.target.state == TrackState::LOST) return;
   record.goal_now = record.target.T_camera_target * options_.offset_m;
   MotionSample sample{record.frame.time_s, record.goal_now, record.target.position_covariance};

@@ -55,6 +55,7 @@ void Scene::fields(FieldVisitor& v) {
   v.group("camera", "the endoscope's camera", camera);
   v.group("recording", "frames from disk instead of the simulated heart", recording);
   v.group("motion", "how the simulated heart moves", motion);
+  v.group("ecg", "an ECG beside the frames, for predictors that know the heartbeat", ecg);
   v.group("surface", "shape, deformation and landmarks of the simulated heart", surface);
   v.group("target", "what the loop follows on the simulated heart", target);
   v.list("more_targets", "further regions that the command track follows", more_targets);
@@ -109,7 +110,10 @@ std::vector<std::string> Scene::validate() const {
     problems.emplace_back(
         "recorded frames have no landmark of known size: engines.estimator must be assumed_depth, region_depth or "
         "stereo_depth");
+  if (is_recorded() && ecg.source == "simulated")
+    problems.emplace_back("ecg.source: recorded frames have no simulated heart; give a recorded ECG");
   add(motion.validate());
+  add(ecg.validate());
   add(surface.validate());
   add(picture.validate());
   add(tool.validate());

@@ -7,6 +7,7 @@
 #include "servo/loop/loop_options.hpp"
 #include "sim/endoscope/picture_options.hpp"
 #include "sim/endoscope/tool_view.hpp"
+#include "sim/heart/ecg_options.hpp"
 #include "sim/heart/heart_motion.hpp"
 #include "sim/heart/heart_surface.hpp"
 #include "sim/robot/cartesian_robot.hpp"
@@ -89,6 +90,7 @@ struct Scene {
   CameraOptions camera;
   RecordingOptions recording;
   HeartMotionOptions motion;
+  EcgOptions ecg;
   HeartSurfaceOptions surface;
   TargetOptions target;
   std::vector<TargetOptions> more_targets;

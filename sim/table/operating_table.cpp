@@ -6,6 +6,7 @@
 #include "sim/endoscope/endoscope.hpp"
 #include "sim/endoscope/painted_pattern.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/table/heart_beats.hpp"
 #include "sim/table/table.hpp"
 
 namespace heartservo::sim {
@@ -13,7 +14,7 @@ namespace heartservo::sim {
 namespace {
 
 // Each consumer of randomness has its own stream of the scene's seed.
-enum class Stream : std::uint64_t { MOTION = 1, SURFACE, PICTURE, ROBOT, HAND, RIGHT_PICTURE };
+enum class Stream : std::uint64_t { MOTION = 1, SURFACE, PICTURE, ROBOT, HAND, RIGHT_PICTURE, ECG };
 std::uint64_t stream_seed(int seed, Stream stream) {
   return static_cast<std::uint64_t>(seed) * 1000003ULL + static_cast<std::uint64_t>(stream);
 }
@@ -26,7 +27,7 @@ class OperatingTable final : public Table, private tracking::FrameSource {
         endoscope_(
             camera_,
             HeartSurface(scene.surface,
-                         HeartMotion(scene.motion, stream_seed(scene.seed, Stream::MOTION), scene.duration_s + 1),
+                         heart_motion(scene, stream_seed(scene.seed, Stream::MOTION)),
                          stream_seed(scene.seed, Stream::SURFACE)),
             scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
         robot_(scene.robot, goal_at(0) + scene.robot.start_error_m, stream_seed(scene.seed, Stream::ROBOT)) {
@@ -43,6 +44,10 @@ class OperatingTable final : public Table, private tracking::FrameSource {
   Eigen::Vector3d marker_to_tip() const override { return -scene_.tool.marker_offset_m; }
   Eigen::Vector3d offset() const override { return scene_.loop.offset_m; }
   std::string reference() const override { return "truth"; }
+  std::unique_ptr<servo::EcgSource> ecg() const override {
+    return heart_ecg(scene_, beats(), stream_seed(scene_.seed, Stream::ECG));
+  }
+  std::vector<double> beats() const override { return endoscope_.surface().motion().beats(); }
 
   double marker_side_m() const override { return scene_.tool.marker_side_m; }
   double region_side_m(std::size_t region) const override {

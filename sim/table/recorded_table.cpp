@@ -9,6 +9,7 @@
 #include "sim/endoscope/tool_view.hpp"
 #include "sim/robot/cartesian_robot.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/table/heart_beats.hpp"
 #include "sim/table/point_tracks.hpp"
 #include "sim/table/table.hpp"
 #include "tracking/frames/open_source.hpp"
@@ -50,6 +51,7 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   std::string reference_point() const override { return reference_ ? reference_->point.name : ""; }
 
   std::optional<tracking::StereoCamera> stereo() const override { return stereo_; }
+  std::unique_ptr<servo::EcgSource> ecg() const override { return heart_ecg(scene_, {}, 0); }
 
   HandPicked picked(std::size_t region) const override {
     const auto corners = marker_corners(tool_, start_tip_);

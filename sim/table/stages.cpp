@@ -46,6 +46,7 @@ servo::LoopStages make_stages(const Scene& scene, const Table& table) {
     stages.marker_estimator = tracking::estimators().make("landmark_refined", estimator);
     stages.refine_marker = refiner(camera, picked.marker_edge_ratio);
   }
+  if (auto ecg = table.ecg()) stages.ecg = std::make_unique<servo::EcgMonitor>(std::move(ecg));
   stages.predictor = servo::predictors().make(scene.engines.predictor, scene.loop.prediction);
   stages.control_law = servo::control_laws().make(scene.engines.controller, scene.loop.control);
   return stages;

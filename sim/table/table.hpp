@@ -5,7 +5,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "servo/ecg/ecg_monitor.hpp"
 #include "servo/loop/score.hpp"
 #include "servo/robot/tool_robot.hpp"
 #include "tracking/camera/camera.hpp"
@@ -48,6 +50,10 @@ class Table {
   /// For the score. Call it after the loop's step, with what that step recorded.
   virtual servo::TruthSample truth(const servo::LoopRecord& record, std::size_t region = 0) const = 0;
   virtual std::string reference() const = 0;  ///< what the pixel residual is scored against: truth, tracked or a file
+  /// The ECG beside the frames, from its beginning; null where the scene has none.
+  virtual std::unique_ptr<servo::EcgSource> ecg() const { return nullptr; }
+  /// When the heart truly beats: R peaks, s; empty where nobody knows. For the score and for files.
+  virtual std::vector<double> beats() const { return {}; }
   virtual std::string reference_point() const { return ""; }  ///< the point of that file; "" where it names none
 };
 

@@ -163,7 +163,8 @@ TEST_P(DocumentedHelp, ItsExamplesWork) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, DocumentedHelp,
-                         testing::Values("heartservo", "servo", "track", "render", "scene", "calibrate", "camera"),
+                         testing::Values("heartservo", "servo", "track", "render", "scene", "calibrate", "camera",
+                                         "analyse", "beats"),
                          [](const auto& command) { return command.param; });
 
 TEST_F(DocumentedCommands, AWrongLineIsNoticed) {
