@@ -42,8 +42,8 @@ std::vector<std::string> column_names() {
   for (const char* name : {"goal/truth/u_px", "goal/truth/v_px", "tip/truth/u_px", "tip/truth/v_px"})
     names.emplace_back(name);
   triple("command", "m_s");
-  for (const char* name :
-       {"command/acts_at_s", "loop/mode", "guard/limited", "guard/not_finite", "timing/track_ms", "timing/chain_ms"})
+  for (const char* name : {"command/acts_at_s", "loop/mode", "guard/limited", "guard/not_finite", "ecg/r_peak_s",
+                           "timing/track_ms", "timing/chain_ms"})
     names.emplace_back(name);
   return names;
 }
@@ -78,7 +78,7 @@ void append(TimeTable& table, const servo::LoopRecord& r, const servo::TruthSamp
   put(row, truth.tip_px);
   put(row, r.command.velocity);
   row.insert(row.end(), {r.command.acts_at_s, static_cast<double>(r.mode), r.guard.limited() ? 1.0 : 0.0,
-                         r.guard.not_finite ? 1.0 : 0.0, r.track_ms, r.chain_ms});
+                         r.guard.not_finite ? 1.0 : 0.0, r.r_peak_s, r.track_ms, r.chain_ms});
   table.append(row);
 }
 

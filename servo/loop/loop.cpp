@@ -46,10 +46,16 @@ void Loop::perceive(LoopRecord& record) {
   record.track = stages_.target_tracker->track(record.frame);
   if (stages_.marker_tracker) record.marker_track = stages_.marker_tracker->track(record.frame);
   record.track_ms = 1e3 * (stopwatch_() - begin);
+  stages_.target_estimator->look_at(record.frame);
   record.target = stages_.target_estimator->estimate(record.track);
   if (stages_.marker_estimator) record.marker = stages_.marker_estimator->estimate(record.marker_track);
   record.encoders = robot_.read(record.frame.time_s);
   record.tip = tip_estimator_.estimate(record.encoders, record.marker);
+  if (stages_.ecg)
+    stages_.ecg->advance(record.frame.time_s, [&](const RPeak& peak) {
+      stages_.predictor->observe_beat(peak.time_s);
+      record.r_peak_s = peak.time_s;
+    });
   if (record.target.state == TrackState::LOST) return;
   record.goal_now = record.target.T_camera_target * options_.offset_m;
   MotionSample sample{record.frame.time_s, record.goal_now, record.target.position_covariance};

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "servo/control/control_law.hpp"
+#include "servo/ecg/ecg_monitor.hpp"
 #include "servo/loop/command_history.hpp"
 #include "servo/loop/loop_options.hpp"
 #include "servo/loop/loop_record.hpp"
@@ -25,6 +26,7 @@ struct LoopStages {
   std::unique_ptr<tracking::TargetTracker> target_tracker, marker_tracker;
   std::unique_ptr<tracking::TargetEstimator> target_estimator, marker_estimator;
   std::unique_ptr<MotionPredictor> predictor;
+  std::unique_ptr<EcgMonitor> ecg;  ///< null: none; its beats reach the predictor
   std::unique_ptr<ControlLaw> control_law;
   /// Corners picked by hand in the first frame -> subpixel corners; empty: as picked.
   std::function<tracking::Quad(const tracking::Frame&, const tracking::Quad&)> refine_target, refine_marker;

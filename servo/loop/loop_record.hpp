@@ -26,6 +26,7 @@ struct LoopRecord {
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();              ///< as estimated
   Eigen::Vector3d goal_now = Eigen::Vector3d::Constant(NAN);  ///< target + offset; NaN while the target is lost
   Prediction goal_then;                                       ///< when the command acts, robot lag included
+  double r_peak_s = NAN;  ///< of the ECG, where one has become known with this frame; before it
   LoopMode mode = LoopMode::HOLD;
   GuardReport guard;
   ToolCommand command;

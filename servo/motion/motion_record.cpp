@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "servo/motion/motion_file.hpp"
 #include "tracking/settings/csv_rows.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_reader.hpp"
@@ -38,8 +39,14 @@ Columns columns_of(const CsvRows& rows, const std::string& group) {
     const auto found = rows.find(group + kAxes[i]);
     if (!found) {
       const std::string name = group + kAxes[i];
-      rows.fail(fmt::format("there is no column {}{}; expected {}", name, did_you_mean(name, rows.names()), kExpected));
+      std::vector<std::string> others = rows.names();  // without those that are right
+      std::erase_if(others, [](const std::string& other) {
+        return std::any_of(kAxes.begin(), kAxes.end(), [&](const char* axis) { return other.ends_with(axis); });
+      });
+      rows.fail(fmt::format("there is no column {}{}; expected {}", name, did_you_mean(name, others), kExpected));
     }
+    if (std::count(rows.names().begin(), rows.names().end(), group + kAxes[i]) > 1)
+      rows.fail(fmt::format("column {} is there twice", group + kAxes[i]));
     columns[i] = *found;
   }
   return columns;
@@ -47,7 +54,7 @@ Columns columns_of(const CsvRows& rows, const std::string& group) {
 
 std::string chosen_group(const CsvRows& rows, const std::string& file, const std::string& wanted) {
   std::vector<std::string> groups = groups_of(rows);
-  std::erase(groups, "truth");
+  if (groups.size() > 1 && wanted != "truth") std::erase(groups, "truth");
   if (groups.empty()) {
     std::string hint;
     for (const std::string& name : rows.names())
@@ -111,12 +118,10 @@ void look_for_oddities(MotionRecord& record) {
     throw InputError(fmt::format("{}:{}: no row has a position under {}/x_m, {}/y_m, {}/z_m", record.file,
                                  record.line.front(), record.group, record.group, record.group));
   if (gaps > 0)
-    warn(first_gap, fmt::format("{} s without a row{}; predictors coast over gaps",
-                                record.time_s[first_gap] - record.time_s[first_gap - 1],
+    warn(first_gap, fmt::format("{:.6g} s without a row{}", record.time_s[first_gap] - record.time_s[first_gap - 1],
                                 gaps > 1 ? fmt::format(", and {} more gaps", gaps - 1) : ""));
   if (empty > 0)
-    warn(first_empty, fmt::format("no position{}; predictors coast over such rows",
-                                  empty > 1 ? fmt::format(", as in {} more rows", empty - 1) : ""));
+    warn(first_empty, fmt::format("no position{}", empty > 1 ? fmt::format(", as in {} more rows", empty - 1) : ""));
   for (int i = 0; i < 3; ++i)
     if (low[i] == high[i]) warn(0, fmt::format("{} is {} in every row", "xyz"[i], low[i]));
 }
@@ -132,7 +137,9 @@ double MotionRecord::period_s() const {
   return *middle;
 }
 
-MotionRecord read_motion_record(const std::string& file, const std::string& group) {
+namespace {
+
+MotionRecord read_csv(const std::string& file, const std::string& group) {
   CsvRows rows(file, kExpected);
   MotionRecord record;
   record.file = file;
@@ -149,9 +156,20 @@ MotionRecord read_motion_record(const std::string& file, const std::string& grou
     if (truth) record.truth.push_back(position(rows, *truth));
     record.line.push_back(rows.line());
   }
+  return record;
+}
+
+}  // namespace
+
+MotionRecord read_motion_record(const std::string& path, const std::string& group) {
+  const std::string file = motion_file(path);
+  const bool tum = file.ends_with(".tum");
+  if (tum && !group.empty()) throw ConfigError(file + ": a trajectory has one point; --points is for CSV files");
+  MotionRecord record = tum ? read_tum(file) : read_csv(file, group);
   if (record.time_s.size() < 2)
-    rows.fail(fmt::format("{} row{} of positions; a motion needs two at least", record.time_s.size(),
-                          record.time_s.size() == 1 ? "" : "s"));
+    throw InputError(fmt::format("{}{}: {} row{} of positions; a motion needs two at least", file,
+                                 record.line.empty() ? "" : fmt::format(":{}", record.line[0]), record.time_s.size(),
+                                 record.time_s.size() == 1 ? "" : "s"));
   look_for_oddities(record);
   return record;
 }

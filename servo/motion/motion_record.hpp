@@ -1,6 +1,8 @@
 #pragma once
 // A motion on disk: CSV with `time_s` and three positions a row, in metres. Columns `measured/x_m, measured/y_m,
-// measured/z_m` and optionally `truth/x_m, ...`; or any other group `NAME/x_m, ...`, chosen by name.
+// measured/z_m` and optionally `truth/x_m, ...`; or any other group `NAME/x_m, ...`, chosen by name; frames.csv of
+// `heartservo track` and `servo` are such files. Or a trajectory in TUM format (.tum). Or the folder of a run, which
+// has a frames.csv.
 #include <Eigen/Core>
 #include <string>
 #include <vector>
@@ -21,10 +23,11 @@ struct MotionRecord {
   double period_s() const;
 };
 
-/// `group`: "" for `measured`, or where there is no such group, the file's only one. Throws InputError with file and
-/// line: missing or misspelt columns, time that does not go on, half a position, infinite numbers, less than two rows;
-/// ConfigError when the file has no group of that name, or several and none is chosen.
-MotionRecord read_motion_record(const std::string& file, const std::string& group = "");
+/// `group`: "" for `measured`, or where there is no such group, the file's only one; truth where there is nothing else.
+/// Throws InputError with file and line: missing or misspelt columns, time that does not go on, half a position,
+/// infinite numbers, less than two rows; ConfigError when the file has no group of that name, or several and none is
+/// chosen.
+MotionRecord read_motion_record(const std::string& path, const std::string& group = "");
 
 /// Times of R peaks, s: a CSV with the column `time_s`, strictly increasing. Throws InputError with file and line.
 std::vector<double> read_beats(const std::string& file);

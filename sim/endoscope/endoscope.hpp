@@ -28,6 +28,12 @@ class Endoscope {
   /// the camera frame (m), null for no tool. Noise is that of `frame_index`.
   void render(double t, std::uint64_t frame_index, cv::Mat& grey, const Eigen::Vector3d* tip = nullptr);
 
+  /// Looks from another place from now on: `view_m` to the side of the camera frame in which all else is given (the
+  /// second view of a stereo endoscope, parallel to the first). The lamp stays where it is.
+  void move_view(const Eigen::Vector3d& view_m);
+
+  std::shared_ptr<const TissueTexture> texture() const { return texture_; }
+
   /// Changes exposure from now on: lamp, gain drift, automatic control. 1 and the options' bias at first.
   void set_light(double gain, double bias_grey);
 
@@ -42,6 +48,7 @@ class Endoscope {
   PictureOptions options_;
   std::shared_ptr<const TissueTexture> texture_;
   SurfaceNodes nodes_;
+  Eigen::Vector3d view_m_ = Eigen::Vector3d::Zero();
   ToolView tool_;
   SurfaceState state_;
   std::unique_ptr<Workspace> workspace_;

@@ -6,6 +6,7 @@
 #include "sim/endoscope/endoscope.hpp"
 #include "sim/endoscope/painted_pattern.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/table/heart_beats.hpp"
 #include "sim/table/table.hpp"
 
 namespace heartservo::sim {
@@ -13,7 +14,7 @@ namespace heartservo::sim {
 namespace {
 
 // Each consumer of randomness has its own stream of the scene's seed.
-enum class Stream : std::uint64_t { MOTION = 1, SURFACE, PICTURE, ROBOT, HAND };
+enum class Stream : std::uint64_t { MOTION = 1, SURFACE, PICTURE, ROBOT, HAND, RIGHT_PICTURE, ECG };
 std::uint64_t stream_seed(int seed, Stream stream) {
   return static_cast<std::uint64_t>(seed) * 1000003ULL + static_cast<std::uint64_t>(stream);
 }
@@ -26,10 +27,16 @@ class OperatingTable final : public Table, private tracking::FrameSource {
         endoscope_(
             camera_,
             HeartSurface(scene.surface,
-                         HeartMotion(scene.motion, stream_seed(scene.seed, Stream::MOTION), scene.duration_s + 1),
+                         heart_motion(scene, stream_seed(scene.seed, Stream::MOTION)),
                          stream_seed(scene.seed, Stream::SURFACE)),
             scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
-        robot_(scene.robot, goal_at(0) + scene.robot.start_error_m, stream_seed(scene.seed, Stream::ROBOT)) {}
+        robot_(scene.robot, goal_at(0) + scene.robot.start_error_m, stream_seed(scene.seed, Stream::ROBOT)) {
+    if (!(scene.stereo.baseline_m > 0)) return;
+    right_ = std::make_unique<Endoscope>(camera_, endoscope_.surface(), scene.picture,
+                                         stream_seed(scene.seed, Stream::RIGHT_PICTURE), scene.tool,
+                                         endoscope_.texture());
+    right_->move_view({scene.stereo.baseline_m, 0, 0});
+  }
 
   tracking::FrameSource& frames() override { return *this; }
   servo::ToolRobot& robot() override { return robot_; }
@@ -37,15 +44,27 @@ class OperatingTable final : public Table, private tracking::FrameSource {
   Eigen::Vector3d marker_to_tip() const override { return -scene_.tool.marker_offset_m; }
   Eigen::Vector3d offset() const override { return scene_.loop.offset_m; }
   std::string reference() const override { return "truth"; }
+  std::unique_ptr<servo::EcgSource> ecg() const override {
+    return heart_ecg(scene_, beats(), stream_seed(scene_.seed, Stream::ECG));
+  }
+  std::vector<double> beats() const override { return endoscope_.surface().motion().beats(); }
 
   double marker_side_m() const override { return scene_.tool.marker_side_m; }
-  double region_side_m() const override {
-    return scene_.target.landmark >= 0 ? scene_.surface.landmarks[landmark()].side_m : scene_.target.side_m;
+  double region_side_m(std::size_t region) const override {
+    const TargetOptions& target = target_of(region);
+    return target.landmark >= 0 ? scene_.surface.landmarks[index_of(target)].side_m : target.side_m;
+  }
+  std::optional<tracking::StereoCamera> stereo() const override {
+    if (!right_) return std::nullopt;
+    tracking::StereoCamera stereo{camera_, camera_};
+    stereo.T_right_left.translation().x() = -scene_.stereo.baseline_m;
+    return stereo;
   }
 
-  HandPicked picked() const override {
-    std::mt19937_64 random(stream_seed(scene_.seed, Stream::HAND));
-    std::uniform_real_distribution<double> shake(-scene_.target.pick_error_px, scene_.target.pick_error_px);
+  HandPicked picked(std::size_t region) const override {
+    const TargetOptions& target = target_of(region);
+    std::mt19937_64 random(stream_seed(scene_.seed, Stream::HAND) + 7919 * region);
+    std::uniform_real_distribution<double> shake(-target.pick_error_px, target.pick_error_px);
     const auto pick = [&](tracking::Quad quad) {
       for (auto& corner : quad) {
         const double u = shake(random), v = shake(random);
@@ -54,25 +73,27 @@ class OperatingTable final : public Table, private tracking::FrameSource {
       return quad;
     };
     HandPicked picked;
-    picked.target = pick(region_at(0));
-    picked.target_edge_ratio = scene_.target.landmark >= 0 ? kFrameEdge : 0;
+    picked.target = pick(region_at(target, 0));
+    picked.target_edge_ratio = target.landmark >= 0 ? kFrameEdge : 0;
     picked.marker_edge_ratio = kFrameEdge;
     const auto marker = marker_corners(scene_.tool, start_tip_);
     tracking::Quad marker_px;
     for (std::size_t i = 0; i < 4; ++i) marker_px[i] = camera_.project(marker[i]);
     picked.marker = pick(marker_px);
+    picked.scale = scale_of(target, random, pick);
     return picked;
   }
 
-  servo::TruthSample truth(const servo::LoopRecord& record) const override {
+  servo::TruthSample truth(const servo::LoopRecord& record, std::size_t region) const override {
+    const TargetOptions& target = target_of(region);
     const double t = record.frame.time_s;
     servo::TruthSample truth;
-    truth.target = pose_at(t).translation();
+    truth.target = pose_at(target, t).translation();
     truth.goal = goal_at(t);
     truth.tip = tip_;
     truth.goal_px = camera_.project(*truth.goal);
     truth.tip_px = camera_.project(*truth.tip);
-    truth.corners_px = region_at(t);
+    truth.corners_px = region_at(target, t);
     return truth;
   }
 
@@ -85,6 +106,7 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     robot_.advance_to(frame.time_s);
     tip_ = robot_.true_tip_camera();
     endoscope_.render(frame.time_s, count_, frame.grey, scene_.show_tool ? &tip_ : nullptr);
+    if (right_) right_->render(frame.time_s, count_, frame.right, scene_.show_tool ? &tip_ : nullptr);
     ++count_;
     return true;
   }
@@ -93,25 +115,46 @@ class OperatingTable final : public Table, private tracking::FrameSource {
   std::optional<std::size_t> frame_count() const override { return scene_.frame_count(); }
   std::string description() const override { return scene_.title; }
 
-  std::size_t landmark() const { return static_cast<std::size_t>(scene_.target.landmark); }
-
-  Eigen::Isometry3d pose_at(double t) const {
-    const HeartSurface& surface = endoscope_.surface();
-    return scene_.target.landmark >= 0 ? surface.T_camera_landmark(landmark(), t)
-                                       : surface.T_camera_point(scene_.target.x_m, scene_.target.y_m, t);
+  const TargetOptions& target_of(std::size_t region) const {
+    return region == 0 ? scene_.target : scene_.more_targets.at(region - 1);
   }
-  Eigen::Vector3d goal_at(double t) const { return pose_at(t) * scene_.loop.offset_m; }
+  static std::size_t index_of(const TargetOptions& target) { return static_cast<std::size_t>(target.landmark); }
+
+  Eigen::Isometry3d pose_at(const TargetOptions& target, double t) const {
+    const HeartSurface& surface = endoscope_.surface();
+    return target.landmark >= 0 ? surface.T_camera_landmark(index_of(target), t)
+                                : surface.T_camera_point(target.x_m, target.y_m, t);
+  }
+  Eigen::Vector3d goal_at(double t) const { return pose_at(scene_.target, t) * scene_.loop.offset_m; }
+
+  // A person measures the distance before the start, as well as the scene says; the loop gets the number.
+  template <class Pick>
+  tracking::ScaleSource scale_of(const TargetOptions& target, std::mt19937_64& random, const Pick& pick) const {
+    const ScaleOptions& scale = scene_.depth;
+    if (scale.source == "stereo") return right_ ? tracking::stereo_scale(*stereo(), scene_.stereo.matching) : nullptr;
+    if (scale.source == "landmark") {
+      const auto index = static_cast<std::size_t>(scale.landmark);
+      if (index >= scene_.surface.landmarks.size()) return nullptr;
+      const auto corners = endoscope_.surface().landmark_corners(index, 0);
+      tracking::Quad px;
+      for (std::size_t i = 0; i < 4; ++i) px[i] = camera_.project(corners[i]);
+      return tracking::landmark_scale(camera_, pick(px), scene_.surface.landmarks[index].side_m, kFrameEdge,
+                                      scene_.tracking.corner_sigma_px);
+    }
+    const double error = std::normal_distribution<double>(0, scale.sigma_m)(random);
+    return tracking::known_scale({pose_at(target, 0).translation().z() + error, scale.sigma_m});
+  }
 
   // Corners of the region in the picture.
-  tracking::Quad region_at(double t) const {
+  tracking::Quad region_at(const TargetOptions& target, double t) const {
     const HeartSurface& surface = endoscope_.surface();
     tracking::Quad quad;
-    if (scene_.target.landmark >= 0) {
-      const auto corners = surface.landmark_corners(landmark(), t);
+    if (target.landmark >= 0) {
+      const auto corners = surface.landmark_corners(index_of(target), t);
       for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(corners[i]);
       return quad;
     }
-    const double h = scene_.target.side_m / 2, x = scene_.target.x_m, y = scene_.target.y_m;
+    const double h = target.side_m / 2, x = target.x_m, y = target.y_m;
     const tracking::Quad material = tracking::rectangle(x - h, y - h, 2 * h, 2 * h);
     for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(surface.point(material[i].x(), material[i].y(), t));
     return quad;
@@ -120,6 +163,7 @@ class OperatingTable final : public Table, private tracking::FrameSource {
   Scene scene_;
   tracking::Camera camera_;
   Endoscope endoscope_;
+  std::unique_ptr<Endoscope> right_;  // null for one view
   CartesianRobot robot_;
   Eigen::Vector3d tip_ = robot_.true_tip_camera();
   Eigen::Vector3d start_tip_ = tip_;

@@ -74,6 +74,31 @@ struct FakeLaw final : ControlLaw {
   }
 };
 
+// Beats once a second from -5 s on; remembers how far it was asked to look.
+struct FakeEcg final : EcgSource {
+  std::vector<double>* asked;
+  long at = -5 * 250;
+  explicit FakeEcg(std::vector<double>* a) : asked(a) {}
+  double rate_hz() const override { return 250; }
+  bool next(double until_s, EcgSample& sample) override {
+    if (asked->empty() || until_s > asked->back()) asked->push_back(until_s);
+    const double t = static_cast<double>(at) / 250, since = t - std::round(t);
+    if (t > until_s) return false;
+    sample = {t, std::exp(-0.5 * since * since / 1e-4)};
+    ++at;
+    return true;
+  }
+};
+
+// Remembers the beats it was told.
+struct FakePredictor final : MotionPredictor {
+  std::vector<double>* beats;
+  explicit FakePredictor(std::vector<double>* b) : beats(b) {}
+  void observe(const MotionSample&) override {}
+  void observe_beat(double r_peak_s) override { beats->push_back(r_peak_s); }
+  Prediction predict(double) const override { return {}; }
+};
+
 struct Bench {
   FakeFrames frames;
   FakeRobot robot;
@@ -82,8 +107,9 @@ struct Bench {
   LoopOptions options;
   std::unique_ptr<Loop> loop;
   std::vector<LoopRecord> records;
+  std::vector<double> beats, asked;  // with an ECG
 
-  explicit Bench(std::size_t n, const Eigen::Vector3d& answer = {0.01, 0, 0}) : frames(n) {
+  explicit Bench(std::size_t n, const Eigen::Vector3d& answer = {0.01, 0, 0}, bool with_ecg = false) : frames(n) {
     options.frame_rate_hz = 1 / kPeriod;
     options.latency.set_total(0.03);
     options.tip.use_marker = false;
@@ -93,6 +119,10 @@ struct Bench {
     stages.target_tracker = std::move(fake);
     stages.target_estimator = std::make_unique<FakeEstimator>();
     stages.predictor = predictors().make("constant_velocity", PredictorOptions{});
+    if (with_ecg) {
+      stages.predictor = std::make_unique<FakePredictor>(&beats);
+      stages.ecg = std::make_unique<EcgMonitor>(std::make_unique<FakeEcg>(&asked));
+    }
     stages.control_law = std::make_unique<FakeLaw>(&seen, answer);
     double ticks = 0;
     loop = std::make_unique<Loop>(frames, robot, std::move(stages), options, Eigen::Vector3d::Zero(),
@@ -153,6 +183,27 @@ TEST(Loop, ANotFiniteLawIsStoppedByTheGuardAndNothingReachesTheRobot) {
   EXPECT_LT(bench.records.size(), 10U);
   EXPECT_NE(bench.loop->stop_reason().find("not finite"), std::string::npos);
   for (const auto& c : bench.robot.commands) EXPECT_TRUE(c.velocity.isZero());
+}
+
+// The ECG is read up to the frame's time and no further; a beat reaches predictor and record when it has become known.
+TEST(Loop, BeatsOfTheEcgReachThePredictorAfterTheirDelay) {
+  Bench bench(330, {0.01, 0, 0}, true);
+  bench.tracker->lost_from = 50;  // beats are heard while the target is lost
+  bench.tracker->lost_to = 300;
+  bench.run();
+  ASSERT_EQ(bench.asked.size(), bench.records.size());
+  for (std::size_t i = 0; i < bench.asked.size(); ++i) EXPECT_EQ(bench.asked[i], bench.records[i].frame.time_s);
+  ASSERT_EQ(bench.beats.size(), 8U);  // -4 to 3 s, some from before the first frame
+  for (std::size_t k = 0; k < bench.beats.size(); ++k) EXPECT_NEAR(bench.beats[k], static_cast<double>(k) - 4, 1e-3);
+  std::size_t heard = 0;
+  for (const auto& record : bench.records) {
+    if (std::isnan(record.r_peak_s) || record.r_peak_s < 0.5) continue;
+    ++heard;
+    const double delay = record.frame.time_s - record.r_peak_s;
+    EXPECT_GT(delay, 0.1);
+    EXPECT_LT(delay, 0.13 + kPeriod);
+  }
+  EXPECT_EQ(heard, 3U);
 }
 
 TEST(Loop, SaysWhyATrackerRefuses) {
