@@ -42,7 +42,7 @@ std::vector<std::string> column_names() {
   for (const char* name : {"goal/truth/u_px", "goal/truth/v_px", "tip/truth/u_px", "tip/truth/v_px"})
     names.emplace_back(name);
   triple("command", "m_s");
-  for (const char* name : {"command/acts_at_s", "loop/mode", "guard/limited", "guard/not_finite", "ecg/r_peak_s",
+  for (const char* name : {"command/acts_at_s", "loop/mode", "guard/limited", "guard/not_finite", "ecg/peak_s",
                            "timing/track_ms", "timing/chain_ms"})
     names.emplace_back(name);
   return names;
