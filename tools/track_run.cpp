@@ -93,6 +93,7 @@ const tracking::Track& TrackLane::follow(const tracking::Frame& frame, const Tra
     v_px_.push_back(moved.y());
   }
   if (estimator_) {
+    estimator_->look_at(frame);
     const auto state = estimator_->estimate(track_);
     const bool known = state.state != TrackState::LOST;
     const Eigen::Vector3d p = state.T_camera_target.translation();

@@ -13,6 +13,22 @@
 
 namespace heartservo::sim {
 
+/// No heart: the surface stands still in itself and rides on a rail along the camera's axis, to and fro at constant
+/// speed (section 4.1).
+struct RailOptions {
+  double travel_m = 0.02;
+  double period_s = 4;
+  Eigen::Vector3d turn_rad{0, 0, 0};
+
+  void fields(FieldVisitor& v) {
+    v.field({"travel_m", "m", "from the nearest to the furthest place; the middle is surface.anchor_m", 0, 0.1},
+            travel_m);
+    v.field({"period_s", "s", "there and back, beginning at the nearest place", 0.01, 1e4}, period_s);
+    v.field({"turn_rad", "rad", "how the surface is turned on the rail: rotation vector, camera frame", -3.2, 3.2},
+            turn_rad);
+  }
+};
+
 struct HeartMotionOptions {
   std::string profile = "sharp";
   double heart_rate_hz = profile::kHeartRate_hz;
@@ -23,10 +39,13 @@ struct HeartMotionOptions {
   double beat_correlation = 0.3;
   double respiration_variability = 0.005;
   double breathing_modulation = 0.1;
+  RailOptions rail;
 
   void fields(FieldVisitor& v) {
-    v.choice({"profile", "", "lines of motion: the six of Table 3, those and sharp harmonics (Table 4), or none"},
-             profile, {"six_line", "sharp", "still"});
+    v.choice({"profile", "",
+              "lines of motion: the six of Table 3, those and sharp harmonics (Table 4), or none; rail: no heart, see "
+              "motion.rail"},
+             profile, {"six_line", "sharp", "still", "rail"});
     v.field({"heart_rate_hz", "Hz", "mean heart rate", 0.3, 2}, heart_rate_hz);
     v.field({"respiration_rate_hz", "Hz", "mean respiration rate", 0.05, 1}, respiration_rate_hz);
     v.field({"amplitude_scale", "", "1 is the paper's heart: 11 mm peak to peak along z", 0, 3}, amplitude_scale);
@@ -37,6 +56,7 @@ struct HeartMotionOptions {
             respiration_variability);
     v.field({"breathing_modulation", "", "by how much breathing changes the beat's amplitude", 0, 0.5},
             breathing_modulation);
+    v.group("rail", "of profile rail: to and fro along the camera's axis (section 4.1)", rail);
   }
 
   /// Every problem at once, empty when usable.
@@ -72,6 +92,7 @@ class HeartMotion {
   using Line = std::complex<double>;  // amplitude and phase: Re(line e^{i angle})
 
   double strength(const std::complex<double>& breath) const;
+  bool on_rail() const { return options_.profile == "rail"; }
 
   HeartMotionOptions options_;
   PhaseClock heart_;

@@ -38,6 +38,7 @@ void Scene::fields(FieldVisitor& v) {
   v.group("engines", "stages of the loop, by name", engines);
   v.group("tracking", "options of the trackers", tracking);
   v.group("loop", "latency, surgeon's offset, options of the stages", loop);
+  v.group("depth_rail", "the paper's experiment on depth (section 4.1), run by `heartservo track SCENE`", depth_rail);
 }
 
 std::size_t Scene::frame_count() const {
@@ -70,6 +71,8 @@ std::vector<std::string> Scene::validate() const {
     problems.emplace_back("loop.tip.use_marker needs tool.marker_side_m above 0");
   if (is_recorded() && engines.estimator != "assumed_depth")
     problems.emplace_back("recorded frames have no landmark of known size: engines.estimator must be assumed_depth");
+  if (!depth_rail.tilts_rad.empty() && (is_recorded() || motion.profile != "rail" || target.landmark < 0))
+    problems.emplace_back("depth_rail.tilts_rad needs motion.profile rail and a landmark as target");
   add(motion.validate());
   add(surface.validate());
   add(picture.validate());

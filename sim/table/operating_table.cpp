@@ -57,6 +57,7 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     picked.target = pick(region_at(0));
     picked.target_edge_ratio = scene_.target.landmark >= 0 ? kFrameEdge : 0;
     picked.marker_edge_ratio = kFrameEdge;
+    if (scene_.target.landmark >= 0) picked.target_plate = pattern_picture(static_cast<std::uint32_t>(landmark()));
     const auto marker = marker_corners(scene_.tool, start_tip_);
     tracking::Quad marker_px;
     for (std::size_t i = 0; i < 4; ++i) marker_px[i] = camera_.project(marker[i]);

@@ -28,6 +28,7 @@ servo::LoopStages make_stages(const Scene& scene, const Table& table) {
   estimator.side_m = table.region_side_m();
   estimator.depth_m = scene.recording.depth_m;
   estimator.corner_sigma_px = scene.tracking.corner_sigma_px;
+  estimator.plate = picked.target_plate;
   stages.target_tracker = tracking::trackers().make(scene.engines.tracker, camera, scene.tracking);
   stages.target_estimator = tracking::estimators().make(scene.engines.estimator, estimator);
   stages.refine_target = refiner(camera, picked.target_edge_ratio);

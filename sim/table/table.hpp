@@ -3,6 +3,7 @@
 // what truly was.
 #include <Eigen/Core>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <string>
 
 #include "servo/loop/score.hpp"
@@ -24,6 +25,7 @@ struct HandPicked {
   tracking::Quad target, marker;
   /// Painted plates have an edge to refine the corners on: its side relative to the plate's; 0 for bare tissue.
   double target_edge_ratio = 0, marker_edge_ratio = 0;
+  cv::Mat target_plate;  ///< what was printed on the target's plate, for `landmark_dense`; empty for bare tissue
 };
 
 class Table {

@@ -1,4 +1,6 @@
 #pragma once
+#include <opencv2/core/mat.hpp>
+
 #include "tracking/camera/camera.hpp"
 #include "tracking/landmark/target_estimator.hpp"
 #include "tracking/settings/registry.hpp"
@@ -10,9 +12,10 @@ struct EstimatorOptions {
   double side_m = 0.005;          ///< side of the landmark; for landmark_*
   double depth_m = 0.055;         ///< for assumed_depth
   double corner_sigma_px = 0.05;  ///< standard deviation of a tracked corner in u and in v
+  cv::Mat plate;                  ///< picture of the landmark as printed, for landmark_dense; empty: learnt
 };
 
-/// landmark_refined, landmark_linear, landmark_visp, assumed_depth.
+/// landmark_refined, landmark_dense, landmark_linear, landmark_visp, assumed_depth.
 const Registry<TargetEstimator, const EstimatorOptions&>& estimators();
 
 }  // namespace heartservo::tracking

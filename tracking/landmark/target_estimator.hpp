@@ -7,6 +7,8 @@
 
 namespace heartservo::tracking {
 
+struct Frame;
+
 /// Metric state of the target at one frame.
 struct TargetState {
   double time_s = 0;
@@ -21,6 +23,9 @@ struct TargetState {
 class TargetEstimator {
  public:
   virtual ~TargetEstimator() = default;
+  /// The frame that the next track comes from, for those who want more of it than the track. The pixels must stay until
+  /// estimate().
+  virtual void look_at(const Frame&) {}
   virtual TargetState estimate(const Track& track) = 0;
 };
 
