@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kBatch = 32;              // rows added to the normal equations at once
 constexpr int kSettled = 1;             // iterations after which the pixels stay the same
-constexpr double kConverged = 1e-4;     // squared length of a step in standard deviations
+constexpr int kLastWeighing = 8;        // iterations; pixels that come and go must not keep the pose from settling
+constexpr double kConverged = 1e-3;     // squared length of a step in standard deviations
 constexpr double kLongestStep_px = 2;   // of a corner
 constexpr double kSmallestSigma = 0.3;  // grey: rounding alone
 
@@ -184,7 +185,7 @@ DensePose DenseRefiner::refine(const cv::Mat& grey, const LandmarkTemplate& plat
     const PlateView view(T, side_m);
     if (result.iterations == 0 && !first_light(plate, view, light)) return result;
     if (result.iterations > 0 && result.iterations <= kSettled) subtract(plate, view, light);
-    weigh();  // later by the differences of the iteration before, which are nearly the same
+    if (result.iterations < kLastWeighing) weigh();  // later by the differences of the iteration before, which are nearly the same
     A = normal_equations(plate, view, light);
     if (!solve_scaled<kDenseParameters>(A.topLeftCorner<kDenseParameters, kDenseParameters>(),
                                         A.topRightCorner<kDenseParameters, 1>(), step, &inverse))

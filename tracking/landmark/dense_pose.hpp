@@ -14,7 +14,7 @@
 namespace heartservo::tracking {
 
 struct DenseOptions {
-  int max_iterations = 15;
+  int max_iterations = 30;
   double outlier_sigmas = 3;     ///< a pixel further off counts less, at twice as much nothing (tool, glare, blood)
   double saturated_grey = 250;   ///< from here on a pixel is left out: it is clipped
   double smallest_share = 0.4;   ///< of the plate's pixels that must count

@@ -51,7 +51,7 @@ TEST(LandmarkTemplate, SamplesTheBlurredPlateAndItsSlopes) {
     PlateGrey grey, softening;
     made.sample(at.x(), at.y(), grey, softening);
     const int i = static_cast<int>((at.x() + 1) * 512), j = static_cast<int>((at.y() + 1) * 512);
-    EXPECT_NEAR(grey.value, soft.at<float>(j, i), 1.5) << at.transpose();  // the nearest node, at up to 900 grey a side
+    EXPECT_NEAR(grey.value, soft.at<float>(j, i), 3) << at.transpose();  // the nearest pixel, at up to 1500 grey per half side
     const auto both = [&](const Eigen::VectorXd& p) {
       PlateGrey T, D;
       made.sample(p(0), p(1), T, D);

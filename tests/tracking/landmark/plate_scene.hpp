@@ -1,6 +1,7 @@
 #pragma once
 // Pictures of a painted plate, made by the dense pose's own model: for what must hold exactly. What must hold against
 // another renderer is in tests/sim.
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 
@@ -31,7 +32,7 @@ inline tracking::DenseLight some_light() {
   return light;
 }
 
-/// CV_8UC1; tissue of one grey level around the plate; Gaussian noise.
+/// CV_8UC1; tissue of one grey level around the plate; Gaussian noise on and near it.
 inline cv::Mat plate_picture(std::mt19937_64& random, const tracking::Camera& camera,
                              const tracking::LandmarkTemplate& plate, const Eigen::Isometry3d& T,
                              const tracking::DenseLight& light, double sigma_grey) {
@@ -39,13 +40,12 @@ inline cv::Mat plate_picture(std::mt19937_64& random, const tracking::Camera& ca
   Eigen::Vector2d low = corners[0], high = low;
   for (const auto& corner : corners) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
   const tracking::PlateView view(T, SIDE);
-  cv::Mat grey(camera.height, camera.width, CV_8UC1);
+  cv::Mat grey(camera.height, camera.width, CV_8UC1, cv::Scalar(90));
   tracking::DenseRow row;
-  for (int v = 0; v < grey.rows; ++v)
-    for (int u = 0; u < grey.cols; ++u) {
+  for (int v = std::max(0, int(low.y()) - 6); v < std::min(grey.rows, int(high.y()) + 6); ++v)
+    for (int u = std::max(0, int(low.x()) - 6); u < std::min(grey.cols, int(high.x()) + 6); ++u) {
       double g = 90;
-      if (u > low.x() - 3 && v > low.y() - 3 && u < high.x() + 3 && v < high.y() + 3)
-        tracking::predict_grey(plate, view, light, camera.normalise({u, v}).homogeneous(), g, row);
+      tracking::predict_grey(plate, view, light, camera.normalise({u, v}).homogeneous(), g, row);
       grey.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(g + normal(random, sigma_grey));
     }
   return grey;
