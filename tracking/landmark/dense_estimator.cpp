@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBlur_px = 0.5;        // of lens and sensor, to begin with
 constexpr double kBlurMisfit = 0.3;     // of the blur's variance; beyond, the template is made anew
-constexpr int kMostBlurChanges = 6;     // then the picture's sharpness varies, and the fit's own term follows it
+constexpr int kMostBlurChanges = 12;    // then the picture's sharpness varies, and the fit's own term follows it
 constexpr double kNoDoubt = 30;         // chi2 by which the corners must prefer a side for the other not to be tried
 constexpr double kSameSide = 0.005;     // rad
 
@@ -73,6 +73,14 @@ TargetState DenseEstimator::estimate(const Track& track) {
 // The pose near `state`, with a template as sharp as the picture.
 DensePose DenseEstimator::refine(const TargetState& state) {
   DensePose dense = refiner_.refine(grey_, template_, side_m_, state.T_camera_target);
+  for (const double ratio : {2.0, 0.5}) {  // further off than the fit's own term can follow
+    if (dense.valid || plate_.empty() || blur_found_ || blur_changes_ >= kMostBlurChanges) break;
+    ++blur_changes_;
+    LandmarkTemplate other(plate_, ratio * template_.blur());
+    dense = refiner_.refine(grey_, other, side_m_, state.T_camera_target);
+    if (dense.valid) template_ = std::move(other);
+  }
+  blur_found_ |= dense.valid;
   while (dense.valid && !plate_.empty() && blur_changes_ < kMostBlurChanges) {
     const double excess = dense.light(6) / dense.light(0);
     if (!(std::abs(excess) > kBlurMisfit)) break;

@@ -40,6 +40,7 @@ class DenseEstimator final : public TargetEstimator {
   PlateLearner learner_;
   DensePose dense_;
   int blur_changes_ = 0;
+  bool blur_found_ = false;
 };
 
 }  // namespace heartservo::tracking

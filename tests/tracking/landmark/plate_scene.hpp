@@ -10,6 +10,8 @@
 
 namespace heartservo::test {
 
+inline constexpr double kFrameGrey = 30;
+
 /// Waves of several lengths and directions within a dark frame.
 inline cv::Mat wavy_plate(int size = 300) {
   cv::Mat plate(size, size, CV_8UC1);
@@ -18,7 +20,7 @@ inline cv::Mat wavy_plate(int size = 300) {
       const double x = 2 * (i + 0.5) / size - 1, y = 2 * (j + 0.5) / size - 1;
       const double grey = 110 + 45 * std::sin(9 * x + 4 * y + 0.3) + 35 * std::sin(13 * y - 5 * x * x + 1) +
                           20 * std::cos(23 * x - 17 * y);
-      plate.at<std::uint8_t>(j, i) = cv::saturate_cast<std::uint8_t>(std::max(std::abs(x), std::abs(y)) > 0.8 ? 30 : grey);
+      plate.at<std::uint8_t>(j, i) = cv::saturate_cast<std::uint8_t>(std::max(std::abs(x), std::abs(y)) > 0.8 ? kFrameGrey : grey);
     }
   return plate;
 }
@@ -44,8 +46,13 @@ inline cv::Mat plate_picture(std::mt19937_64& random, const tracking::Camera& ca
   tracking::DenseRow row;
   for (int v = std::max(0, int(low.y()) - 6); v < std::min(grey.rows, int(high.y()) + 6); ++v)
     for (int u = std::max(0, int(low.x()) - 6); u < std::min(grey.cols, int(high.x()) + 6); ++u) {
+      const Eigen::Vector3d ray = camera.normalise({u, v}).homogeneous(), arm = view.arm(ray) / view.half_side_m;
       double g = 90;
-      tracking::predict_grey(plate, view, light, camera.normalise({u, v}).homogeneous(), g, row);
+      if (!tracking::predict_grey(plate, view, light, ray, g, row)) {
+        const double x = view.right.dot(arm), y = view.down.dot(arm);
+        // the dark frame goes on to the outline, where the template has no say
+        if (std::max(std::abs(x), std::abs(y)) < 1) g = kFrameGrey * (light(0) + light(1) * x + light(2) * y) + light(7);
+      }
       grey.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(g + normal(random, sigma_grey));
     }
   return grey;
