@@ -132,6 +132,7 @@ int run_render(RenderOptions o) {
   summary.update(rendering.facts);
   truth.write_csv(folder.file("truth.csv"));
   write_beats(*table, truth, folder);
+  if (const cv::Mat plate = table->picked().target_plate; !plate.empty()) write_png(folder.file("landmark.png"), plate);
   if (rendering.metric) tracking::write_ros_camera(table->camera(), folder.file("camera.yaml").string(), "endoscope");
   Report report;
   report.title = "render " + stem_of(o.run.source);

@@ -31,7 +31,7 @@ constexpr double kMostUnscored = 0.9;  // share of a run that may be spent on se
 struct ServoOptions {
   RunOptions run;
   RecordedOptions recorded;
-  std::string tracker, predictor, controller, robot, reference, point;
+  std::string tracker, estimator, predictor, controller, robot, reference, point;
   double latency_ms = -1, settle_s = -1;
 };
 
@@ -74,6 +74,7 @@ sim::Scene configure(const ServoOptions& o) {
     name = wanted;
   };
   choose(scene.engines.tracker, o.tracker, tracking::trackers());
+  choose(scene.engines.estimator, o.estimator, tracking::estimators());
   choose(scene.engines.predictor, o.predictor, servo::predictors());
   choose(scene.engines.controller, o.controller, servo::control_laws());
   if (!o.robot.empty()) scene.robot.type = o.robot;
@@ -173,6 +174,7 @@ Command add_servo_command(CLI::App& program) {
   app->add_option("--point", o.point, "which of them; default: the one inside the region nearest to its centre")
       ->type_name("NAME");
   app->add_option("--tracker", o.tracker, "overrides the scene's tracker");
+  app->add_option("--estimator", o.estimator, "overrides the scene's estimator");
   app->add_option("--predictor", o.predictor, "overrides the scene's predictor");
   app->add_option("--controller", o.controller, "overrides the scene's control law");
   app->add_option("--robot", o.robot, "overrides the scene's robot")->check(one_of({"cartesian", "ideal"}));

@@ -11,6 +11,7 @@
 #include "tools/artificial.hpp"
 #include "tools/command.hpp"
 #include "tools/corner_truth.hpp"
+#include "tools/depth_rail.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/overlay.hpp"
 #include "tools/progress.hpp"
@@ -22,6 +23,7 @@
 #include "tools/track_tables.hpp"
 #include "tools/track_truth.hpp"
 #include "tools/trajectory.hpp"
+#include "tracking/frames/picture_file.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/landmark/square_refinement.hpp"
 #include "tracking/planar/registry.hpp"
@@ -39,6 +41,7 @@ struct TrackOptions {
   std::vector<double> corners;
   double square_mm = 0;
   std::string truth, points, point;
+  std::string estimator, landmark;
 };
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -59,10 +62,11 @@ struct Tracked {
 
 Tracked artificial(const TrackOptions& o) {
   if (!o.recorded.roi.empty() || !o.recorded.camera.empty() || o.recorded.frame_rate_hz > 0 || !o.corners.empty() ||
-      !o.truth.empty() || !o.points.empty() || !o.point.empty() || o.square_mm > 0 || !o.recorded.right.empty())
+      !o.truth.empty() || !o.points.empty() || !o.point.empty() || o.square_mm > 0 || !o.recorded.right.empty() ||
+      !o.estimator.empty() || !o.landmark.empty())
     throw ConfigError(
-        "--roi, --corners, --camera, --stereo, --frame-rate-hz, --square-mm, --truth, --points and --point are for "
-        "recorded frames; an artificial sequence knows its region and truth");
+        "--roi, --corners, --camera, --stereo, --frame-rate-hz, --square-mm, --estimator, --landmark, --truth, "
+        "--points and --point are for recorded frames; an artificial sequence knows its region and truth");
   const sim::SequenceOptions options = sequence_for(o.artificial, o.run);
   Tracked tracked;
   tracked.table = sim::make_sequence_table(options);
@@ -90,17 +94,33 @@ bool are_pictures(const std::string& source) {
   return std::filesystem::is_directory(source) || source.find('%') != std::string::npos;
 }
 
+// The landmark's picture of the command line; empty without one.
+cv::Mat printed_plate(const TrackOptions& o) {
+  if (o.landmark.empty()) return {};
+  if (o.estimator != "landmark_dense") throw ConfigError("--landmark is for --estimator landmark_dense");
+  const auto picture = tracking::read_picture(o.landmark);
+  if (!picture.problem.empty()) throw InputError(picture.problem);
+  return picture.grey;
+}
+
 std::unique_ptr<tracking::TargetEstimator> estimator_for(const TrackOptions& o, const Tracked& tracked,
                                                          std::size_t region) {
   const sim::Table& table = *tracked.table;
-  const std::string& name = tracked.scene.engines.estimator;
-  const bool of_depth = name == "region_depth" || name == "stereo_depth";
-  if (of_depth && !o.artificial && o.square_mm == 0)
-    return tracking::estimators().make(name, sim::estimator_options(tracked.scene, table, region));
+  const std::string& of_scene = tracked.scene.engines.estimator;
+  const bool of_depth = of_scene == "region_depth" || of_scene == "stereo_depth";
+  if (of_depth && !o.artificial && o.square_mm == 0 && o.estimator.empty())
+    return tracking::estimators().make(of_scene, sim::estimator_options(tracked.scene, table, region));
   tracking::EstimatorOptions options;
   options.camera = table.camera();
   options.side_m = o.square_mm > 0 ? 1e-3 * o.square_mm : table.region_side_m(region);
-  return options.side_m > 0 ? tracking::estimators().make("landmark_refined", options) : nullptr;
+  options.plate = o.landmark.empty() ? table.picked(region).target_plate : printed_plate(o);
+  if (!(options.side_m > 0)) {
+    if (!o.estimator.empty()) throw ConfigError("--estimator needs --square-mm, the side of the landmark");
+    return nullptr;
+  }
+  std::string name = o.estimator;
+  if (name.empty()) name = of_scene.starts_with("landmark_") ? of_scene : "landmark_refined";
+  return tracking::estimators().make(name, options);
 }
 
 // Regions to follow: those of --corners or --roi, else the scene's.
@@ -111,6 +131,8 @@ std::size_t region_count(const TrackOptions& o, const Tracked& tracked) {
 
 // `truth` may be null.
 Tracked opened(const TrackOptions& o, const CornerTruth* truth) {
+  if (!o.estimator.empty()) tracking::estimators().require(o.estimator);
+  (void)printed_plate(o);  // throws before anything is opened
   if (o.artificial) return artificial(o);
   sim::Scene scene = configure(o);
   // pictures carry no clock: where the command line gives none they run on that of their truth
@@ -205,8 +227,20 @@ void write_tables(const RunFolder& folder, const std::vector<TrackLane>& lanes) 
   lanes.front().table().write_csv(folder.file("frames.csv"));
 }
 
+// The experiment of the scene, if it has one.
+std::optional<sim::Scene> depth_rail_of(const TrackOptions& o) {
+  if (o.artificial || o.run.source.empty() || !is_scene(o.run.source)) return {};
+  sim::Scene scene = configure(o);
+  if (scene.depth_rail.tilts_rad.empty()) return {};
+  if (o.trackers.size() > 1 || !o.estimator.empty())
+    throw ConfigError("the depth experiment compares its own estimators, with one tracker: give one, no --estimator");
+  if (!o.trackers.empty()) scene.engines.tracker = chosen_trackers(o, scene).front();
+  return scene;
+}
+
 int run_track(TrackOptions o) {
   if (o.run.list) return list_trackers();
+  if (const auto scene = depth_rail_of(o)) return run_depth_rail(o.run, *scene);
   if (o.artificial) o.run.source = artificial_source(o.artificial, o.run);
   std::optional<CornerTruth> truth_file;
   if (!o.truth.empty()) truth_file.emplace(o.truth);
@@ -292,6 +326,12 @@ Command add_track_command(CLI::App& program) {
                  "region as x1,y1,...,x4,y4 in px, clockwise from top left; again for further regions");
   app->add_option("--square-mm", o.square_mm, "side of the square landmark: metric pose, with --camera")
       ->check(finite(0.1, 1000));
+  app->add_option("--estimator", o.estimator,
+                  "metric pose by landmark_refined (default), landmark_dense, landmark_linear or landmark_visp");
+  app->add_option("--landmark", o.landmark,
+                  "picture of the landmark as printed, cut at its outline, for landmark_dense; without it the first "
+                  "frames show it")
+      ->type_name("FILE");
   app->add_option("--truth", o.truth, "CSV of the true corners, as 'heartservo render' writes it")->type_name("FILE");
   app->add_option("--points", o.points,
                   "CSV of annotated points (frame or time_s, point, u_px, v_px, visible), to score")

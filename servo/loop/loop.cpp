@@ -48,6 +48,7 @@ void Loop::perceive(LoopRecord& record) {
   record.track_ms = 1e3 * (stopwatch_() - begin);
   stages_.target_estimator->look_at(record.frame);
   record.target = stages_.target_estimator->estimate(record.track);
+  if (stages_.marker_estimator) stages_.marker_estimator->look_at(record.frame);
   if (stages_.marker_estimator) record.marker = stages_.marker_estimator->estimate(record.marker_track);
   record.encoders = robot_.read(record.frame.time_s);
   record.tip = tip_estimator_.estimate(record.encoders, record.marker);

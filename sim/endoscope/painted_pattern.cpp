@@ -50,4 +50,18 @@ double painted_pattern(std::uint32_t id, double x, double y) {
   return mix(framed, 195, step(rim - kFrameEdge));
 }
 
+cv::Mat pattern_picture(std::uint32_t id, int size) {
+  constexpr int kSamples = 2;
+  cv::Mat picture(size, size, CV_8UC1);
+  for (int j = 0; j < size; ++j)
+    for (int i = 0; i < size; ++i) {
+      double grey = 0;
+      for (int k = 0; k < kSamples * kSamples; ++k)
+        grey += painted_pattern(id, 2 * (i + (k % kSamples + 0.5) / kSamples) / size - 1,
+                                2 * (j + (k / kSamples + 0.5) / kSamples) / size - 1);
+      picture.at<std::uint8_t>(j, i) = cv::saturate_cast<std::uint8_t>(grey / (kSamples * kSamples));
+    }
+  return picture;
+}
+
 }  // namespace heartservo::sim

@@ -1,6 +1,7 @@
 #pragma once
 // The grey pattern painted on landmarks and on the tool's marker.
 #include <cstdint>
+#include <opencv2/core/mat.hpp>
 
 namespace heartservo::sim {
 
@@ -16,5 +17,9 @@ inline constexpr double kFrameEdge = 0.84;
 /// paint and so the same on any tissue: corners picked by hand are refined on it. Gradients are strong in both
 /// directions at every scale from the plate to a few pixels, and different ids look different.
 double painted_pattern(std::uint32_t id, double x, double y);
+
+/// The pattern as a picture to print, CV_8UC1, outline to outline: pixel (row j, column i) is its mean over
+/// x = 2 i / size - 1 ... 2 (i + 1) / size - 1.
+cv::Mat pattern_picture(std::uint32_t id, int size = 512);
 
 }  // namespace heartservo::sim

@@ -38,8 +38,10 @@ std::vector<double> drawn_beats(const HeartMotionOptions& o, std::uint64_t seed,
 
 std::vector<std::string> HeartMotionOptions::validate() const {
   std::vector<std::string> problems;
-  if (profile != "six_line" && profile != "sharp" && profile != "still")
-    problems.push_back(fmt::format("profile '{}' is not six_line, sharp or still", profile));
+  if (profile != "six_line" && profile != "sharp" && profile != "still" && profile != "rail")
+    problems.push_back(fmt::format("profile '{}' is not six_line, sharp, still or rail", profile));
+  if (!(rail.travel_m >= 0 && rail.period_s > 0 && std::isfinite(rail.travel_m) && rail.turn_rad.allFinite()))
+    problems.emplace_back("rail needs a travel_m of 0 or more, a period_s above 0 and a finite turn_rad");
   for (const double value : {heart_rate_hz, respiration_rate_hz})
     if (!(value > 0)) problems.push_back(fmt::format("rate {} Hz is not positive", value));
   if (!(1 / heart_rate_hz > kSystole_s + 0.1))
@@ -60,8 +62,9 @@ HeartMotion::HeartMotion(const HeartMotionOptions& options, std::uint64_t seed, 
     : options_(checked(options)),
       heart_(plausible_beats(std::move(r_peaks_s)), 1 / options.heart_rate_hz, kSystole_s),
       respiration_(respiration_clock(options, seed, duration_s)) {
-  if (options_.profile != "still") harmonics_ = options_.profile == "sharp" ? profile::kCardiacLines : 4;
-  const double scale = options_.profile == "still" ? 0 : options_.amplitude_scale;
+  const bool beats = options_.profile != "still" && !on_rail();
+  if (beats) harmonics_ = options_.profile == "sharp" ? profile::kCardiacLines : 4;
+  const double scale = beats ? options_.amplitude_scale : 0;
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < 6; ++i) {
       const double amplitude = scale * profile::kAmplitude_m[axis] * std::sqrt(profile::kDensityPercent[axis][i] / 100);
@@ -83,6 +86,10 @@ double HeartMotion::strength(const std::complex<double>& breath) const {
 double HeartMotion::beat_strength(double t) const { return strength(turn(respiration_phase(t))); }
 
 Eigen::Vector3d HeartMotion::displacement(double t) const {
+  if (on_rail()) {
+    const double way = t / options_.rail.period_s, there = 2 * std::abs(way - std::floor(way + 0.5));
+    return {0, 0, options_.rail.travel_m * (there - 0.5)};
+  }
   const std::complex<double> breath = turn(respiration_phase(t));
   const std::complex<double> beat = turn(cardiac_phase(t));
   const double beat_gain = strength(breath);
@@ -97,6 +104,11 @@ Eigen::Vector3d HeartMotion::displacement(double t) const {
 }
 
 Eigen::Matrix3d HeartMotion::rotation(double t) const {
+  if (on_rail()) {
+    const double turn = options_.rail.turn_rad.norm();
+    if (turn < 1e-12) return Eigen::Matrix3d::Identity();
+    return Eigen::AngleAxisd(turn, options_.rail.turn_rad / turn).toRotationMatrix();
+  }
   const double breath = kTau * respiration_phase(t);
   const double beat = kTau * cardiac_phase(t);
   const double amplitude = harmonics_ == 0 ? 0 : options_.rotation_rad * options_.amplitude_scale;

@@ -13,6 +13,22 @@
 
 namespace heartservo::sim {
 
+/// No heart: the surface stands still in itself and rides on a rail along the camera's axis, to and fro at constant
+/// speed (section 4.1).
+struct RailOptions {
+  double travel_m = 0.02;
+  double period_s = 4;
+  Eigen::Vector3d turn_rad{0, 0, 0};
+
+  void fields(FieldVisitor& v) {
+    v.field({"travel_m", "m", "from the nearest to the furthest place; the middle is surface.anchor_m", 0, 0.1},
+            travel_m);
+    v.field({"period_s", "s", "there and back, beginning at the nearest place", 0.01, 1e4}, period_s);
+    v.field({"turn_rad", "rad", "how the surface is turned on the rail: rotation vector, camera frame", -3.2, 3.2},
+            turn_rad);
+  }
+};
+
 struct HeartMotionOptions {
   std::string profile = "sharp";
   double heart_rate_hz = profile::kHeartRate_hz;
@@ -26,10 +42,13 @@ struct HeartMotionOptions {
   double ectopic_share = 0, ectopic_advance = 0.3;
   std::string beats;
   double beats_rate_hz = 360;
+  RailOptions rail;
 
   void fields(FieldVisitor& v) {
-    v.choice({"profile", "", "lines of motion: the six of Table 3, those and sharp harmonics (Table 4), or none"},
-             profile, {"six_line", "sharp", "still"});
+    v.choice({"profile", "",
+              "lines of motion: the six of Table 3, those and sharp harmonics (Table 4), or none; rail: no heart, see "
+              "motion.rail"},
+             profile, {"six_line", "sharp", "still", "rail"});
     v.field({"heart_rate_hz", "Hz", "mean heart rate", 0.3, 2}, heart_rate_hz);
     v.field({"respiration_rate_hz", "Hz", "mean respiration rate", 0.05, 1}, respiration_rate_hz);
     v.field({"amplitude_scale", "", "1 is the paper's heart: 11 mm peak to peak along z", 0, 3}, amplitude_scale);
@@ -49,6 +68,7 @@ struct HeartMotionOptions {
     v.field({"beats_rate_hz", "Hz", "samples per second where motion.beats counts samples; that of ecg.record if given",
              1, 100000},
             beats_rate_hz);
+    v.group("rail", "of profile rail: to and fro along the camera's axis (section 4.1)", rail);
   }
 
   /// Every problem at once, empty when usable.
@@ -84,6 +104,7 @@ class HeartMotion {
   using Line = std::complex<double>;  // amplitude and phase: Re(line e^{i angle})
 
   double strength(const std::complex<double>& breath) const;
+  bool on_rail() const { return options_.profile == "rail"; }
 
   HeartMotionOptions options_;
   PhaseClock heart_;

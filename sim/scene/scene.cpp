@@ -67,6 +67,7 @@ void Scene::fields(FieldVisitor& v) {
   v.group("engines", "stages of the loop, by name", engines);
   v.group("tracking", "options of the trackers", tracking);
   v.group("loop", "latency, surgeon's offset, options of the stages", loop);
+  v.group("depth_rail", "the paper's experiment on depth (section 4.1), run by `heartservo track SCENE`", depth_rail);
 }
 
 std::size_t Scene::frame_count() const {
@@ -112,6 +113,8 @@ std::vector<std::string> Scene::validate() const {
         "stereo_depth");
   if (is_recorded() && ecg.source == "simulated")
     problems.emplace_back("ecg.source: recorded frames have no simulated heart; give a recorded ECG");
+  if (!depth_rail.tilts_rad.empty() && (is_recorded() || motion.profile != "rail" || target.landmark < 0))
+    problems.emplace_back("depth_rail.tilts_rad needs motion.profile rail and a landmark as target");
   add(motion.validate());
   add(ecg.validate());
   add(surface.validate());

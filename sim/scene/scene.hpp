@@ -7,6 +7,7 @@
 #include "servo/loop/loop_options.hpp"
 #include "sim/endoscope/picture_options.hpp"
 #include "sim/endoscope/tool_view.hpp"
+#include "sim/experiment/depth_rail_options.hpp"
 #include "sim/heart/ecg_options.hpp"
 #include "sim/heart/heart_motion.hpp"
 #include "sim/heart/heart_surface.hpp"
@@ -101,6 +102,7 @@ struct Scene {
   EngineOptions engines;
   tracking::TrackerOptions tracking;
   servo::LoopOptions loop;
+  DepthRailOptions depth_rail;
 
   // Not keys: from the command line, or from where the scene lies.
   std::string folder = ".";    ///< where relative paths start

@@ -29,6 +29,7 @@ tracking::EstimatorOptions estimator_options(const Scene& scene, const Table& ta
   estimator.depth = scene.depth.assumed;
   estimator.stereo = table.stereo();
   estimator.matching = scene.stereo.matching;
+  estimator.plate = table.picked(region).target_plate;
   return estimator;
 }
 

@@ -3,6 +3,7 @@
 // what truly was.
 #include <Eigen/Core>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ struct HandPicked {
   double target_edge_ratio = 0, marker_edge_ratio = 0;
   /// How the target's distance becomes known once, as the scene's depth.source says; empty where it does not.
   tracking::ScaleSource scale;
+  cv::Mat target_plate;  ///< what was printed on the target's plate, for `landmark_dense`; empty for bare tissue
 };
 
 class Table {

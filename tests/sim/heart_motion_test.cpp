@@ -152,5 +152,20 @@ TEST(HeartMotion, RefusesARateWithoutDiastole) {
   EXPECT_THROW(HeartMotion(options, 1, 10), ConfigError);
 }
 
+TEST(HeartMotion, TheRailRunsToAndFroAtConstantSpeedAndTurnsNothing) {
+  HeartMotionOptions options;
+  options.profile = "rail";
+  options.rail = {0.02, 4, {0.1, -0.3, 0.05}};
+  const HeartMotion motion(options, 1, 10);
+  for (const auto& [t, z] : {std::pair{0.0, -0.01}, {1.0, 0.0}, {2.0, 0.01}, {2.5, 0.005}, {4.0, -0.01}, {5.0, 0.0}}) {
+    EXPECT_LT((motion.displacement(t) - Eigen::Vector3d(0, 0, z)).norm(), 1e-12) << t;
+    const Eigen::AngleAxisd turn(motion.rotation(t));
+    EXPECT_LT((turn.angle() * turn.axis() - options.rail.turn_rad).norm(), 1e-9) << t;
+    EXPECT_EQ(motion.beat_strength(t), 0) << t;
+  }
+  options.rail.period_s = 0;
+  EXPECT_THROW(HeartMotion(options, 1, 10), ConfigError);
+}
+
 }  // namespace
 }  // namespace heartservo::sim

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "tracking/landmark/square_pose.hpp"
@@ -13,8 +12,6 @@
 namespace heartservo::tracking {
 
 namespace {
-
-constexpr double MEMORY_S = 0.25;  // a heart that beats four times a second is anywhere after that
 
 std::array<Eigen::Vector2d, 4> normalise(const Camera& camera, const Quad& corners) {
   std::array<Eigen::Vector2d, 4> result;
@@ -55,7 +52,6 @@ TargetState LandmarkEstimator::estimate(const Track& track) {
     return state;
   }
   state.state = track.state;
-  if (state.state == TrackState::OK) remember(state);
   return state;
 }
 
@@ -63,8 +59,9 @@ bool LandmarkEstimator::solve(const Track& track, TargetState& state) {
   if (method_ == Method::REFINED) {
     RefinedPoseOptions options;
     options.corner_sigma_px = corner_sigma_px_;
-    refined_ = refined_square_pose(camera_, track.corners, side_m_, options, predicted(track.time_s));
+    refined_ = refined_square_pose(camera_, track.corners, side_m_, options);
     if (refined_.taken < 0) return false;
+    choose_side(track);
     state.T_camera_target = refined_.solutions[refined_.taken].T_camera_target;
     state.position_covariance = refined_.covariance.topLeftCorner<3, 3>();
     return true;
@@ -98,27 +95,20 @@ Eigen::Matrix3d LandmarkEstimator::linear_covariance(const Quad& corners) const 
   return J * J.transpose() * (corner_sigma_px_ * corner_sigma_px_);
 }
 
-std::optional<Eigen::Isometry3d> LandmarkEstimator::predicted(double time_s) const {
-  if (!last_ || !(time_s - last_->time_s < MEMORY_S) || time_s < last_->time_s) return std::nullopt;
-  if (!before_last_ || !(last_->time_s - before_last_->time_s < MEMORY_S)) return last_->T_camera_target;
-  // Over a gap of several frames the velocity of one frame, mostly noise, is not to be trusted further than two.
-  const double ratio = std::min((time_s - last_->time_s) / (last_->time_s - before_last_->time_s), 2.0);
-  const auto &T1 = last_->T_camera_target, &T0 = before_last_->T_camera_target;
-  Eigen::AngleAxisd turn(Eigen::Matrix3d(T1.linear() * T0.linear().transpose()));
-  turn.angle() *= ratio;
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() = T1.translation() + ratio * (T1.translation() - T0.translation());
-  T.linear() = turn * T1.linear();
-  return T;
-}
-
-void LandmarkEstimator::remember(const TargetState& state) {
-  if (last_ && !(state.time_s > last_->time_s)) {  // the clock went back: another sequence
-    last_.reset();
-    before_last_.reset();
-  }
-  before_last_ = last_;
-  last_ = Stamped{state.time_s, state.T_camera_target};
+void LandmarkEstimator::choose_side(const Track& track) {
+  const auto& [a, b] = refined_.solutions;
+  const SideFilter::Rotations rotations{a.T_camera_target.linear(), b.T_camera_target.linear()};
+  const std::array<double, 2> chi2{a.chi2, b.chi2};
+  // What an UNCERTAIN frame shows is judged by the frames before, and does not count for those to come.
+  const double sigma = std::sqrt(refined_.covariance.diagonal().tail<3>().maxCoeff());
+  const auto log_p = track.state == TrackState::OK
+                         ? sides_.keep(track.time_s, rotations, chi2, sigma)
+                         : sides_.log_probabilities(track.time_s, rotations, chi2, sigma);
+  const int taken = log_p[1] > log_p[0] ? 1 : 0;
+  refined_.preference = 2 * std::abs(log_p[0] - log_p[1]);
+  if (taken == refined_.taken) return;
+  refined_.taken = taken;
+  refined_.covariance = pose_covariance(camera_, refined_.solutions[taken].T_camera_target, side_m_, corner_sigma_px_);
 }
 
 }  // namespace heartservo::tracking

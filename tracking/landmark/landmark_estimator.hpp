@@ -1,9 +1,9 @@
 #pragma once
-#include <optional>
 #include <string>
 
 #include "tracking/camera/camera.hpp"
 #include "tracking/landmark/refined_pose.hpp"
+#include "tracking/landmark/side_filter.hpp"
 #include "tracking/landmark/target_estimator.hpp"
 
 namespace heartservo::tracking {
@@ -20,29 +20,22 @@ class LandmarkEstimator final : public TargetEstimator {
 
   TargetState estimate(const Track& track) override;
 
-  /// Both poses and their errors of the last "refined" estimate, for people to look at.
+  /// Both poses and their errors of the last "refined" estimate; the one taken is that of the side filter.
   const RefinedPose& last_refined() const { return refined_; }
 
  private:
   enum class Method { REFINED, LINEAR, VISP };
 
-  struct Stamped {
-    double time_s;
-    Eigen::Isometry3d T_camera_target;
-  };
-
-  // The pose where the last ones lead to at constant velocity; nothing when they are too old.
-  std::optional<Eigen::Isometry3d> predicted(double time_s) const;
   bool solve(const Track& track, TargetState& state);
   Eigen::Matrix3d linear_covariance(const Quad& corners) const;
-  void remember(const TargetState& state);
+  void choose_side(const Track& track);
 
   Camera camera_;
   double side_m_;
   Method method_;
   double corner_sigma_px_;
   RefinedPose refined_;
-  std::optional<Stamped> last_, before_last_;
+  SideFilter sides_;
 };
 
 }  // namespace heartservo::tracking

@@ -1,4 +1,5 @@
 #pragma once
+#include <opencv2/core/mat.hpp>
 #include <optional>
 
 #include "tracking/camera/camera.hpp"
@@ -18,9 +19,10 @@ struct EstimatorOptions {
   DepthOptions depth;             ///< for region_depth
   std::optional<StereoCamera> stereo;  ///< for stereo_depth
   StereoOptions matching;         ///< for stereo_depth
+  cv::Mat plate;                  ///< picture of the landmark as printed, for landmark_dense; empty: learnt
 };
 
-/// landmark_refined, landmark_linear, landmark_visp, assumed_depth, region_depth, stereo_depth.
+/// landmark_refined, landmark_dense, landmark_linear, landmark_visp, assumed_depth, region_depth, stereo_depth.
 const Registry<TargetEstimator, const EstimatorOptions&>& estimators();
 
 }  // namespace heartservo::tracking
