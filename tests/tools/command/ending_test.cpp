@@ -61,7 +61,7 @@ TEST_F(Ending, TheGuardLeavesAFlightRecording) {
   const std::string tight =
       edited_scene({{"motion:\n", "motion:\n  heart_rate_hz: 0.6\n  respiration_rate_hz: 0.15\n"},
                     {"loop:\n", "loop:\n  guard: {workspace_radius_m: 0.0075, max_step_m: 0.001}\n"}});
-  const Outcome o = run({"servo", tight, "--json", "--out", "run"});
+  const Outcome o = run({"servo", tight, "--predictor", "constant_acceleration", "--json", "--out", "run"});
   EXPECT_EQ(o.code, 5) << o.err;
   EXPECT_EQ(o.error_lines(), 1u) << o.err;
   EXPECT_NE(o.err.find("safety stop"), std::string::npos) << o.err;
