@@ -17,7 +17,7 @@ struct DenseGoals {
   servo::Spread bound_z, bound_x;  ///< standard deviations by the bound, m
   Eigen::Matrix<double, 6, 1> over_bound = Eigen::Matrix<double, 6, 1>::Zero();  ///< RMS of error / bound
   double chi2_pose = 0, chi2_position = 0;  ///< normalised squared errors by the estimator's own covariance, sums
-  double worst_misfit_grey = 0;             ///< of the bound's model to the renderer
+  std::vector<double> misfit_grey;          ///< of the bound's model to the renderer, per pose; glare counts
   double ms = 0;                            ///< per estimate, mean
 };
 
@@ -53,7 +53,7 @@ inline DenseGoals dense_goals(const tracking::Camera& camera, std::mt19937_64& r
     e << state.T_camera_target.translation() - truth.translation(), turn.angle() * turn.axis();
     const auto limit = bound.at(truth, landmark.picture(truth, 0, 0), sigma_grey);
     goals.over_bound += e.cwiseAbs2().cwiseQuotient(limit.covariance.diagonal()) / poses;
-    goals.worst_misfit_grey = std::max(goals.worst_misfit_grey, limit.misfit_grey);
+    goals.misfit_grey.push_back(limit.misfit_grey);
     const auto& C = estimator.last_dense().covariance;
     goals.chi2_pose += e.dot(C.ldlt().solve(e));
     const Eigen::Matrix3d position = C.topLeftCorner<3, 3>();
