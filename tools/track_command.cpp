@@ -118,6 +118,8 @@ std::unique_ptr<tracking::TargetEstimator> estimator_for(const TrackOptions& o, 
     if (!o.estimator.empty()) throw ConfigError("--estimator needs --square-mm, the side of the landmark");
     return nullptr;
   }
+  if (!o.estimator.empty() && !o.estimator.starts_with("landmark_"))
+    throw ConfigError(fmt::format("--estimator {}: here choose one of landmark_*", o.estimator));
   std::string name = o.estimator;
   if (name.empty()) name = of_scene.starts_with("landmark_") ? of_scene : "landmark_refined";
   return tracking::estimators().make(name, options);
