@@ -36,6 +36,7 @@ Command add_texture_command(CLI::App& program);
 Command add_scene_command(CLI::App& program);
 Command add_calibrate_command(CLI::App& program);
 Command add_camera_command(CLI::App& program);
+Command add_stabilise_command(CLI::App& program);
 
 /// A check for options: a finite number from `low` to `high`. CLI::Range lets NaN pass.
 CLI::Validator finite(double low, double high);

@@ -24,9 +24,13 @@ class Endoscope {
             std::uint64_t seed, const ToolOptions& tool = {}, std::shared_ptr<const TissueTexture> texture = nullptr);
   ~Endoscope();
 
-  /// Picture at time t (s) into `grey` (CV_8UC1 of the camera's size, allocated if it is not). `tip`: the tool's tip in
-  /// the camera frame (m), null for no tool. Noise is that of `frame_index`.
-  void render(double t, std::uint64_t frame_index, cv::Mat& grey, const Eigen::Vector3d* tip = nullptr);
+  /// Picture at time t (s) into `grey` (CV_8UC1 of the camera's size, allocated if it is not). `tool`: null for
+  /// none. Noise is that of `frame_index`.
+  void render(double t, std::uint64_t frame_index, cv::Mat& grey, const ToolPose* tool = nullptr);
+
+  /// Moves the endoscope: it takes its pictures from `shift` (m) off its first place, without turning. The tool is not
+  /// moved with it: its pose stays relative to the camera.
+  void move_to(const Eigen::Vector3d& shift) { shift_ = shift; }
 
   /// Changes exposure from now on: lamp, gain drift, automatic control. 1 and the options' bias at first.
   void set_light(double gain, double bias_grey);
@@ -44,6 +48,7 @@ class Endoscope {
   SurfaceNodes nodes_;
   ToolView tool_;
   SurfaceState state_;
+  Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();
   std::unique_ptr<Workspace> workspace_;
 };
 

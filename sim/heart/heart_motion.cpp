@@ -37,8 +37,8 @@ std::vector<double> drawn_beats(const HeartMotionOptions& o, std::uint64_t seed,
 
 std::vector<std::string> HeartMotionOptions::validate() const {
   std::vector<std::string> problems;
-  if (profile != "six_line" && profile != "sharp" && profile != "still")
-    problems.push_back(fmt::format("profile '{}' is not six_line, sharp or still", profile));
+  if (profile != "six_line" && profile != "sharp" && profile != "still" && profile != "sine")
+    problems.push_back(fmt::format("profile '{}' is not six_line, sharp, still or sine", profile));
   for (const double value : {heart_rate_hz, respiration_rate_hz})
     if (!(value > 0)) problems.push_back(fmt::format("rate {} Hz is not positive", value));
   if (!(1 / heart_rate_hz > kSystole_s + 0.1))
@@ -59,8 +59,9 @@ HeartMotion::HeartMotion(const HeartMotionOptions& options, std::uint64_t seed, 
     : options_(checked(options)),
       heart_(plausible_beats(std::move(r_peaks_s)), 1 / options.heart_rate_hz, kSystole_s),
       respiration_(respiration_clock(options, seed, duration_s)) {
-  if (options_.profile != "still") harmonics_ = options_.profile == "sharp" ? profile::kCardiacLines : 4;
-  const double scale = options_.profile == "still" ? 0 : options_.amplitude_scale;
+  const bool beats = options_.profile != "still" && options_.profile != "sine";
+  if (beats) harmonics_ = options_.profile == "sharp" ? profile::kCardiacLines : 4;
+  const double scale = beats ? options_.amplitude_scale : 0;
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < 6; ++i) {
       const double amplitude = scale * profile::kAmplitude_m[axis] * std::sqrt(profile::kDensityPercent[axis][i] / 100);
@@ -82,6 +83,8 @@ double HeartMotion::strength(const std::complex<double>& breath) const {
 double HeartMotion::beat_strength(double t) const { return strength(turn(respiration_phase(t))); }
 
 Eigen::Vector3d HeartMotion::displacement(double t) const {
+  if (options_.profile == "sine")
+    return options_.sine_amplitude_m * std::sin(kTau * options_.sine_hz * t) * Eigen::Vector3d::Unit(options_.sine_axis);
   const std::complex<double> breath = turn(respiration_phase(t));
   const std::complex<double> beat = turn(cardiac_phase(t));
   const double beat_gain = strength(breath);

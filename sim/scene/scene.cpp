@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "servo/control/registry.hpp"
 #include "tracking/camera/camera_file.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/planar/registry.hpp"
@@ -35,6 +36,8 @@ void Scene::fields(FieldVisitor& v) {
   v.group("picture", "light, lens, sensor and texture of the simulated picture", picture);
   v.group("tool", "the tool as it looks in the picture", tool);
   v.group("robot", "the robot that carries the tool", robot);
+  v.group("tissue", "what the tip feels when it presses", tissue);
+  v.list("occlusions", "swabs that cover the target for a while", occlusions);
   v.group("engines", "stages of the loop, by name", engines);
   v.group("tracking", "options of the trackers", tracking);
   v.group("loop", "latency, surgeon's offset, options of the stages", loop);
@@ -70,6 +73,12 @@ std::vector<std::string> Scene::validate() const {
     problems.emplace_back("loop.tip.use_marker needs tool.marker_side_m above 0");
   if (is_recorded() && engines.estimator != "assumed_depth")
     problems.emplace_back("recorded frames have no landmark of known size: engines.estimator must be assumed_depth");
+  if (is_recorded() && (loop.force.on() || loop.eye_in_hand))
+    problems.emplace_back("loop.force and loop.eye_in_hand need a simulated heart: recorded frames cannot be touched or moved");
+  if (loop.eye_in_hand && loop.tip.use_marker)
+    problems.emplace_back("loop.eye_in_hand shows no tool: loop.tip.use_marker must be false");
+  if (is_recorded() && loop.path.type != "hold")
+    problems.emplace_back("loop.path needs the heart's orientation, which recorded frames do not tell: it must be hold");
   add(motion.validate());
   add(surface.validate());
   add(picture.validate());

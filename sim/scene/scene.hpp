@@ -5,11 +5,13 @@
 #include <vector>
 
 #include "servo/loop/loop_options.hpp"
+#include "sim/endoscope/occlusion.hpp"
 #include "sim/endoscope/picture_options.hpp"
 #include "sim/endoscope/tool_view.hpp"
 #include "sim/heart/heart_motion.hpp"
 #include "sim/heart/heart_surface.hpp"
-#include "sim/robot/cartesian_robot.hpp"
+#include "sim/robot/robot_options.hpp"
+#include "sim/tissue/kelvin_voigt.hpp"
 #include "tracking/planar/planar_tracker.hpp"
 #include "tracking/settings/fields.hpp"
 
@@ -86,6 +88,8 @@ struct Scene {
   PictureOptions picture;
   ToolOptions tool;
   RobotOptions robot;
+  TissueOptions tissue;
+  std::vector<OcclusionOptions> occlusions;
   EngineOptions engines;
   tracking::TrackerOptions tracking;
   servo::LoopOptions loop;

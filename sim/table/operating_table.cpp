@@ -5,7 +5,10 @@
 #include "servo/loop/loop_record.hpp"
 #include "sim/endoscope/endoscope.hpp"
 #include "sim/endoscope/painted_pattern.hpp"
+#include "sim/robot/registry.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/tissue/feeling_robot.hpp"
+#include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
 
 namespace heartservo::sim {
@@ -13,7 +16,7 @@ namespace heartservo::sim {
 namespace {
 
 // Each consumer of randomness has its own stream of the scene's seed.
-enum class Stream : std::uint64_t { MOTION = 1, SURFACE, PICTURE, ROBOT, HAND };
+enum class Stream : std::uint64_t { MOTION = 1, SURFACE, PICTURE, ROBOT, HAND, FORCE, SWAB };
 std::uint64_t stream_seed(int seed, Stream stream) {
   return static_cast<std::uint64_t>(seed) * 1000003ULL + static_cast<std::uint64_t>(stream);
 }
@@ -22,6 +25,7 @@ class OperatingTable final : public Table, private tracking::FrameSource {
  public:
   explicit OperatingTable(const Scene& scene)
       : scene_(scene),
+        path_(surgeon_path(scene)),
         camera_(camera_of(scene, 0, 0)),
         endoscope_(
             camera_,
@@ -29,12 +33,18 @@ class OperatingTable final : public Table, private tracking::FrameSource {
                          HeartMotion(scene.motion, stream_seed(scene.seed, Stream::MOTION), scene.duration_s + 1),
                          stream_seed(scene.seed, Stream::SURFACE)),
             scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
-        robot_(scene.robot, goal_at(0) + scene.robot.start_error_m, stream_seed(scene.seed, Stream::ROBOT)) {}
+        robot_(make_robot({scene.robot, goal_at(0) + scene.robot.start_error_m, tool_axis(),
+                           stream_seed(scene.seed, Stream::ROBOT)})),
+        feeling_(*robot_, [this](double t) { return force_at(t); }, scene.loop.force.on() ? scene.tissue.force_noise_n : 0,
+                 stream_seed(scene.seed, Stream::FORCE)) {
+    if (scene.loop.eye_in_hand) start_goal_ = goal_at(0);
+  }
 
   tracking::FrameSource& frames() override { return *this; }
-  servo::ToolRobot& robot() override { return robot_; }
+  servo::ToolRobot& robot() override { return feeling_; }
   const tracking::Camera& camera() const override { return camera_; }
   Eigen::Vector3d marker_to_tip() const override { return -scene_.tool.marker_offset_m; }
+  Eigen::Vector3d tool_axis() const override { return scene_.tool.direction.normalized(); }
   Eigen::Vector3d offset() const override { return scene_.loop.offset_m; }
   std::string reference() const override { return "truth"; }
 
@@ -67,12 +77,13 @@ class OperatingTable final : public Table, private tracking::FrameSource {
   servo::TruthSample truth(const servo::LoopRecord& record) const override {
     const double t = record.frame.time_s;
     servo::TruthSample truth;
-    truth.target = pose_at(t).translation();
-    truth.goal = goal_at(t);
-    truth.tip = tip_;
-    truth.goal_px = camera_.project(*truth.goal);
-    truth.tip_px = camera_.project(*truth.tip);
+    truth.target = pose_at(t).translation() - camera_shift();
+    truth.goal = goal_at(t) + pose_at(t).linear().col(2) * record.depth_m;
+    truth.tip = scene_.loop.eye_in_hand ? Eigen::Vector3d(start_goal_ + tip_ - start_tip_) : tip_;
+    truth.goal_px = camera_.project(*truth.goal - camera_shift());
+    truth.tip_px = camera_.project(*truth.tip - camera_shift());
     truth.corners_px = region_at(t);
+    if (scene_.loop.force.on()) truth.force_n = force_at(t);
     return truth;
   }
 
@@ -82,11 +93,21 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     frame = tracking::Frame{};
     frame.sequence = count_;
     frame.time_s = static_cast<double>(count_) / scene_.camera.frame_rate_hz;
-    robot_.advance_to(frame.time_s);
-    tip_ = robot_.true_tip_camera();
-    endoscope_.render(frame.time_s, count_, frame.grey, scene_.show_tool ? &tip_ : nullptr);
+    robot_->advance_to(frame.time_s);
+    tip_ = robot_->true_tip_camera();
+    const ToolPose tool{tip_, robot_->true_turn_camera()};
+    endoscope_.move_to(camera_shift());
+    endoscope_.render(frame.time_s, count_, frame.grey, scene_.show_tool && !scene_.loop.eye_in_hand ? &tool : nullptr);
+    for (const OcclusionOptions& occlusion : scene_.occlusions)
+      if (occlusion.covers(frame.time_s)) cover(occlusion, frame);
     ++count_;
     return true;
+  }
+  void cover(const OcclusionOptions& occlusion, tracking::Frame& frame) const {
+    const Eigen::Vector3d target = pose_at(frame.time_s).translation() - camera_shift();
+    const Eigen::Vector2d px = camera_.project(target);
+    draw_swab(frame.grey, {px.x(), px.y()}, occlusion.radius_m * camera_.fx / target.z(), scene_.picture.noise_grey,
+              stream_seed(scene_.seed, Stream::SWAB) + count_);
   }
   cv::Size size() const override { return {camera_.width, camera_.height}; }
   double frame_rate_hz() const override { return scene_.camera.frame_rate_hz; }
@@ -100,7 +121,22 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     return scene_.target.landmark >= 0 ? surface.T_camera_landmark(landmark(), t)
                                        : surface.T_camera_point(scene_.target.x_m, scene_.target.y_m, t);
   }
-  Eigen::Vector3d goal_at(double t) const { return pose_at(t) * scene_.loop.offset_m; }
+  Eigen::Vector3d goal_at(double t) const { return pose_at(t) * (scene_.loop.offset_m + path_.position(t)); }
+
+  // Eye-in-hand the robot carries the camera: how far it has moved, in the first picture's camera frame.
+  Eigen::Vector3d camera_shift() const {
+    return scene_.loop.eye_in_hand ? Eigen::Vector3d(tip_ - start_tip_) : Eigen::Vector3d::Zero();
+  }
+
+  // Of the tissue on the tip. The tissue is the plane of the target's x and y, as near as the tip comes to it.
+  double force_at(double t) const {
+    constexpr double kHalf_s = 5e-4;
+    const Eigen::Vector3d tip = robot_->true_tip_camera();
+    const auto depth = [&](double time) { return (pose_at(time).inverse() * tip).z(); };
+    const double now = depth(t), surface_rate = (depth(t + kHalf_s) - depth(t - kHalf_s)) / (2 * kHalf_s);
+    const Eigen::Vector3d normal = pose_at(t).linear().col(2);
+    return contact_force(scene_.tissue, now, surface_rate + normal.dot(robot_->true_velocity_camera()));
+  }
 
   // Corners of the region in the picture.
   tracking::Quad region_at(double t) const {
@@ -108,21 +144,23 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     tracking::Quad quad;
     if (scene_.target.landmark >= 0) {
       const auto corners = surface.landmark_corners(landmark(), t);
-      for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(corners[i]);
+      for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(corners[i] - camera_shift());
       return quad;
     }
     const double h = scene_.target.side_m / 2, x = scene_.target.x_m, y = scene_.target.y_m;
     const tracking::Quad material = tracking::rectangle(x - h, y - h, 2 * h, 2 * h);
-    for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(surface.point(material[i].x(), material[i].y(), t));
+    for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(surface.point(material[i].x(), material[i].y(), t) - camera_shift());
     return quad;
   }
 
   Scene scene_;
+  servo::SurgeonPath path_;
   tracking::Camera camera_;
   Endoscope endoscope_;
-  CartesianRobot robot_;
-  Eigen::Vector3d tip_ = robot_.true_tip_camera();
-  Eigen::Vector3d start_tip_ = tip_;
+  std::unique_ptr<SimulatedRobot> robot_;
+  FeelingRobot feeling_;
+  Eigen::Vector3d tip_ = robot_->true_tip_camera();
+  Eigen::Vector3d start_tip_ = tip_, start_goal_ = tip_;
   std::size_t count_ = 0;
 };
 

@@ -34,6 +34,7 @@ class Table {
   virtual const tracking::Camera& camera() const = 0;
   virtual HandPicked picked() const = 0;
   virtual Eigen::Vector3d marker_to_tip() const = 0;  ///< m, camera frame; the tool does not turn
+  virtual Eigen::Vector3d tool_axis() const = 0;      ///< from the tip along the shaft, camera frame
   virtual Eigen::Vector3d offset() const = 0;         ///< surgeon's offset in the target frame, m
   virtual double region_side_m() const = 0;           ///< of the square region followed; 0: unknown
   virtual double marker_side_m() const = 0;

@@ -139,7 +139,7 @@ TEST_F(DocumentedCommands, OfTheDocumentationWork) {
 }
 
 TEST_F(DocumentedCommands, OfTheHelpWork) {
-  for (const std::string command : {"", "servo", "track", "render", "scene", "calibrate", "camera"}) {
+  for (const std::string command : {"", "servo", "track", "render", "scene", "calibrate", "camera", "stabilise"}) {
     const auto lines = help_lines(
         command,
         run(command.empty() ? std::vector<std::string>{"--help"} : std::vector<std::string>{command, "--help"}).out);
