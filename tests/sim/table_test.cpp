@@ -107,7 +107,7 @@ TEST(OperatingTable, EyeInHandThePictureStandsStill) {
   EXPECT_LT(s.residual.rms, 0.3 * s.motion_rms);
   EXPECT_LT(s.residual_px.rms, 0.3 * s.motion_px.rms + 8);
   scene.motion.profile = "still";
-  EXPECT_LT(run(scene).residual.rms, 1e-4);
+  EXPECT_LT(run(scene).residual.rms, 2e-4);
 }
 
 TEST(OperatingTable, ACoveredTargetIsLostWhileItIsCoveredAndFoundAfterwards) {
