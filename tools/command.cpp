@@ -67,11 +67,42 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& source
   command.add_flag("--quiet", o.quiet, "no progress and no table");
 }
 
-void add_recording_options(CLI::App& command, RecordedOptions& o) {
-  command.add_option("--roi", o.roi, "region in the first frame: x,y,width,height in px")
-      ->delimiter(',')
-      ->expected(4)
-      ->check(finite(-1e5, 1e5));
+CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<double>& values, std::size_t count,
+                            const std::string& help) {
+  const auto take = [&values, name, count](const std::vector<std::string>& texts) {
+    values.clear();
+    const CLI::Validator number = finite(-1e5, 1e5);
+    for (const std::string& text : texts) {
+      const auto parts = CLI::detail::split(text, ',');
+      if (parts.size() != count)
+        throw CLI::ValidationError(name, fmt::format("'{}' must be {} numbers separated by commas", text, count));
+      for (std::string part : parts) {
+        if (const std::string problem = number(part); !problem.empty()) throw CLI::ValidationError(name, problem);
+        values.push_back(std::stod(part));
+      }
+    }
+    return true;
+  };
+  return command.add_option(name, CLI::callback_t(take), help)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false)
+      ->type_name("PX,...");
+}
+
+void add_recording_options(CLI::App& command, RecordedOptions& o, bool several) {
+  if (several)
+    add_repeatable(command, "--roi", o.roi, 4,
+                   "region in the first frame: x,y,width,height in px; again for further regions");
+  else
+    command.add_option("--roi", o.roi, "region in the first frame: x,y,width,height in px")
+        ->delimiter(',')
+        ->expected(4)
+        ->check(finite(-1e5, 1e5));
+  command
+      .add_option("--stereo", o.right,
+                  "the right view of a stereo endoscope (as SOURCE, the left one); --camera is a stereo file then")
+      ->type_name("RIGHT");
   command.add_option("--camera", o.camera, "camera file (ROS, OpenCV, ViSP, Matlab)")->type_name("FILE");
   command.add_option("--frame-rate-hz", o.frame_rate_hz, "frames per second of recorded frames")
       ->check(finite(0.1, 10000));
@@ -89,6 +120,13 @@ sim::Scene scene_for(const RunOptions& run, const RecordedOptions& recorded) {
   if (!recorded.roi.empty()) scene.recording.roi = recorded.roi;
   if (!recorded.camera.empty()) scene.camera.calibration = absolute(recorded.camera);
   if (recorded.frame_rate_hz > 0) scene.camera.frame_rate_hz = recorded.frame_rate_hz;
+  if (!recorded.right.empty()) {
+    if (!scene.is_recorded()) throw ConfigError("--stereo is for recorded frames; a simulated scene has stereo.baseline_m");
+    if (scene.camera.calibration.empty())
+      throw ConfigError("--stereo needs --camera FILE, a stereo calibration such as 'heartservo calibrate' writes");
+    scene.recording.right = absolute(recorded.right);
+    scene.engines.estimator = "stereo_depth";
+  }
   if (recorded.depth_mm > 0) scene.recording.depth_m = 1e-3 * recorded.depth_mm;
   if (!scene.is_recorded() && (!recorded.roi.empty() || recorded.depth_mm > 0))
     throw ConfigError("--roi and --depth-mm are for recorded frames; a simulated scene has its region under 'target'");
@@ -110,7 +148,8 @@ std::string stem_of(const std::string& source) {
 
 std::string config_text(const sim::Scene& scene, const std::string& command) {
   sim::Scene resolved = scene;
-  for (std::string* path : {&resolved.camera.calibration, &resolved.recording.source, &resolved.recording.reference,
+  for (std::string* path : {&resolved.camera.calibration, &resolved.recording.source, &resolved.recording.right,
+                            &resolved.recording.reference, &resolved.motion.beats, &resolved.ecg.record,
                             &resolved.loop.path.file})
     if (!path->empty()) *path = absolute(sim::resolve(scene, *path));
   return fmt::format("# heartservo {} {}: the resolved configuration; it can be run again as a scene\n{}",

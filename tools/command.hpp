@@ -36,6 +36,9 @@ Command add_texture_command(CLI::App& program);
 Command add_scene_command(CLI::App& program);
 Command add_calibrate_command(CLI::App& program);
 Command add_camera_command(CLI::App& program);
+Command add_predict_command(CLI::App& program);
+Command add_analyse_command(CLI::App& program);
+Command add_beats_command(CLI::App& program);
 Command add_stabilise_command(CLI::App& program);
 
 /// A check for options: a finite number from `low` to `high`. CLI::Range lets NaN pass.
@@ -57,9 +60,16 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
 struct RecordedOptions {
   std::vector<double> roi;
   std::string camera;
+  std::string right;  ///< the right view of a stereo endoscope
   double frame_rate_hz = 0, depth_mm = 0;
 };
-void add_recording_options(CLI::App& command, RecordedOptions& options);
+/// `several`: --roi may be given more than once.
+void add_recording_options(CLI::App& command, RecordedOptions& options, bool several = false);
+
+/// An option that may be given more than once, `count` numbers separated by commas each time; they go one after the
+/// other into `values`.
+CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<double>& values, std::size_t count,
+                            const std::string& help);
 
 /// True for a scene file (.yaml or .yml), false for frames.
 bool is_scene(const std::string& source);

@@ -85,9 +85,10 @@ int main(int argc, char** argv) {
   program.footer(
       "Example: heartservo servo scenes/pig_2007.yaml\n"
       "Exit codes: 0 done, 2 wrong usage or configuration, 3 unreadable input, 4 device trouble, 5 safety stop");
-  const Command commands[] = {add_servo_command(program), add_track_command(program),   add_render_command(program),
-                              add_scene_command(program), add_texture_command(program), add_calibrate_command(program),
-                              add_camera_command(program), add_stabilise_command(program)};
+  const Command commands[] = {add_servo_command(program),  add_track_command(program),   add_render_command(program),
+                              add_scene_command(program),  add_texture_command(program), add_calibrate_command(program),
+                              add_camera_command(program), add_predict_command(program), add_analyse_command(program),
+                              add_beats_command(program),  add_stabilise_command(program)};
   try {
     program.parse(argc, argv);
     for (const Command& command : commands)

@@ -80,6 +80,19 @@ std::vector<ReportPlot> plots_of(const Rendering& r) {
            {{"horizontal", "truth/corner0/u_px"}, {"vertical", "truth/corner0/v_px"}}}};
 }
 
+// beats.csv: the heart's R peaks; ecg.csv: what a loop would have got. Both as far as the frames go.
+void write_beats(const sim::Table& table, const TimeTable& truth, const RunFolder& folder) {
+  const double end = truth.rows() > 0 ? truth.time_s().back() : 0;
+  TimeTable beats({"time_s"}), ecg({"time_s", "ecg_mv"});
+  for (const double beat : table.beats())
+    if (beat >= 0 && beat <= end) beats.append({beat});
+  if (beats.rows() > 0) beats.write_csv(folder.file("beats.csv"));
+  const auto source = table.ecg();
+  if (!source) return;
+  for (servo::EcgSample sample; source->next(end, sample);) ecg.append({sample.time_s, sample.value});
+  ecg.write_csv(folder.file("ecg.csv"));
+}
+
 int run_render(RenderOptions o) {
   if (o.artificial) o.run.source = artificial_source(o.artificial, o.run);
   const Rendering rendering = o.artificial ? artificial_rendering(o) : scene_rendering(o);
@@ -118,6 +131,7 @@ int run_render(RenderOptions o) {
                          {"interrupted", interrupted}};
   summary.update(rendering.facts);
   truth.write_csv(folder.file("truth.csv"));
+  write_beats(*table, truth, folder);
   if (rendering.metric) tracking::write_ros_camera(table->camera(), folder.file("camera.yaml").string(), "endoscope");
   Report report;
   report.title = "render " + stem_of(o.run.source);

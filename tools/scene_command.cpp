@@ -26,12 +26,13 @@ void check(const std::string& file) {
 int run_scene(const SceneOptions& o) {
   if (o.files.empty() == o.keys.empty()) throw ConfigError("give scene files to check, or --keys markdown or schema");
   for (const auto& file : o.files) check(file);
+  const sim::Scene defaults;
   if (o.keys == "markdown")
     fmt::print(
         "<!-- Made by 'heartservo scene --keys markdown'; the text comes from tools/scene_introduction.md. -->\n"
         "{}{}",
-        embedded::scene_introduction(), to_markdown(sim::Scene{}));
-  if (o.keys == "schema") fmt::print("{}", to_json_schema(sim::Scene{}, "A scene of heartservo"));
+        embedded::scene_introduction(), to_markdown(defaults));
+  if (o.keys == "schema") fmt::print("{}", to_json_schema(defaults, "A scene of heartservo"));
   return DONE;
 }
 

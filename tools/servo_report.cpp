@@ -95,7 +95,8 @@ Report servo_report(const json& j, const TimeTable& table, std::vector<ReportPic
   report.headline_unit = unit + " RMS residual";
   if (!metric)
     report.notices.push_back("Recorded frames: no 3D truth. The pixel residual is scored against: " +
-                             reference_text(j["residual_px"]) + ". Depth is assumed.");
+                             reference_text(j["residual_px"]) +
+                             (j["estimator"] == "assumed_depth" ? ". Depth is assumed." : "."));
   if (const int lost = j["tracking"]["lost_frames"]; lost > 0)
     report.notices.push_back(fmt::format("The region was lost in {} of {} frames.", lost, j["frames"].get<int>()));
   if (!j["stop_reason"].is_null()) report.notices.push_back("Safety stop: " + j["stop_reason"].get<std::string>());

@@ -13,7 +13,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/table/csv_rows.hpp"
+#include "tracking/settings/csv_rows.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_reader.hpp"
 
@@ -32,7 +32,8 @@ std::string_view trimmed(std::string_view text) {
 
 TimeTable::TimeTable(std::vector<std::string> columns, std::size_t rows)
     : names_(std::move(columns)), values_(names_.size()) {
-  if (names_.empty() || names_[0] != "time_s") reject("the first column must be time_s");
+  if (names_.empty() || (names_[0] != "time_s" && names_[0] != "frequency_hz"))
+    reject("the first column must be time_s");
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const std::string& name = names_[i];
     const bool printable = std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= ' ' && c != 127; });
@@ -83,7 +84,7 @@ void TimeTable::write_csv(const std::filesystem::path& file) const {
 }
 
 TimeTable TimeTable::read_csv(const std::filesystem::path& file) {
-  sim::CsvRows rows(file, "a header that begins with time_s");
+  CsvRows rows(file, "a header that begins with time_s");
   try {
     TimeTable table(rows.names(), rows.rows_ahead());
     std::vector<double> row(table.names_.size());

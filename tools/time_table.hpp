@@ -13,7 +13,7 @@ namespace heartservo::tools {
 
 class TimeTable {
  public:
-  /// `columns[0]` must be "time_s". Throws std::invalid_argument for that, for an empty, repeated or unprintable name,
+  /// `columns[0]` must be "time_s", or "frequency_hz" for a spectrum, which the rest of this calls time. Throws std::invalid_argument for that, for an empty, repeated or unprintable name,
   /// or one with a comma or quote. append() allocates nothing for the first `rows` rows.
   explicit TimeTable(std::vector<std::string> columns, std::size_t rows = 0);
 

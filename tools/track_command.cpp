@@ -6,6 +6,7 @@
 
 #include "servo/loop/loop_record.hpp"
 #include "sim/sequence/sequence_table.hpp"
+#include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
 #include "tools/artificial.hpp"
 #include "tools/command.hpp"
@@ -58,11 +59,10 @@ struct Tracked {
 
 Tracked artificial(const TrackOptions& o) {
   if (!o.recorded.roi.empty() || !o.recorded.camera.empty() || o.recorded.frame_rate_hz > 0 || !o.corners.empty() ||
-      !o.truth.empty() || !o.points.empty() || !o.point.empty() || o.square_mm > 0)
+      !o.truth.empty() || !o.points.empty() || !o.point.empty() || o.square_mm > 0 || !o.recorded.right.empty())
     throw ConfigError(
-        "--roi, --corners, --camera, --frame-rate-hz, --square-mm, --truth, --points and --point are for recorded "
-        "frames; "
-        "an artificial sequence knows its region and truth");
+        "--roi, --corners, --camera, --stereo, --frame-rate-hz, --square-mm, --truth, --points and --point are for "
+        "recorded frames; an artificial sequence knows its region and truth");
   const sim::SequenceOptions options = sequence_for(o.artificial, o.run);
   Tracked tracked;
   tracked.table = sim::make_sequence_table(options);
@@ -90,11 +90,23 @@ bool are_pictures(const std::string& source) {
   return std::filesystem::is_directory(source) || source.find('%') != std::string::npos;
 }
 
-std::unique_ptr<tracking::TargetEstimator> estimator_for(const TrackOptions& o, const sim::Table& table) {
+std::unique_ptr<tracking::TargetEstimator> estimator_for(const TrackOptions& o, const Tracked& tracked,
+                                                         std::size_t region) {
+  const sim::Table& table = *tracked.table;
+  const std::string& name = tracked.scene.engines.estimator;
+  const bool of_depth = name == "region_depth" || name == "stereo_depth";
+  if (of_depth && !o.artificial && o.square_mm == 0)
+    return tracking::estimators().make(name, sim::estimator_options(tracked.scene, table, region));
   tracking::EstimatorOptions options;
   options.camera = table.camera();
-  options.side_m = o.square_mm > 0 ? 1e-3 * o.square_mm : table.region_side_m();
+  options.side_m = o.square_mm > 0 ? 1e-3 * o.square_mm : table.region_side_m(region);
   return options.side_m > 0 ? tracking::estimators().make("landmark_refined", options) : nullptr;
+}
+
+// Regions to follow: those of --corners or --roi, else the scene's.
+std::size_t region_count(const TrackOptions& o, const Tracked& tracked) {
+  if (o.artificial) return 1;
+  return o.corners.empty() ? tracked.scene.region_count() : o.corners.size() / 8;
 }
 
 // `truth` may be null.
@@ -116,10 +128,10 @@ Tracked opened(const TrackOptions& o, const CornerTruth* truth) {
   return tracked;
 }
 
-tracking::Quad region_for(const TrackOptions& o, const sim::HandPicked& picked) {
+tracking::Quad region_for(const TrackOptions& o, const sim::HandPicked& picked, std::size_t region) {
   if (o.corners.empty()) return picked.target;
   tracking::Quad quad;
-  for (std::size_t i = 0; i < 4; ++i) quad[i] = {o.corners[2 * i], o.corners[2 * i + 1]};
+  for (std::size_t i = 0; i < 4; ++i) quad[i] = {o.corners[8 * region + 2 * i], o.corners[8 * region + 2 * i + 1]};
   return quad;
 }
 
@@ -136,8 +148,9 @@ std::vector<std::string> chosen_trackers(const TrackOptions& o, const sim::Scene
 
 // The region and its centre; the point to score comes with the truth.
 TrackStart start_of(const TrackOptions& o, const sim::HandPicked& picked, const tracking::Frame& frame,
-                    const tracking::Camera& lens) {
-  TrackStart start{region_for(o, picked), {}};
+                    const tracking::Camera& lens, std::size_t region, std::size_t regions) {
+  TrackStart start{region_for(o, picked, region), {}};
+  if (regions > 1) start.number = region + 1;
   if (picked.target_edge_ratio > 0)
     start.region = tracking::refine_square(frame.grey, lens, start.region, picked.target_edge_ratio).corners;
   if (!tracking::is_convex(start.region))
@@ -148,24 +161,32 @@ TrackStart start_of(const TrackOptions& o, const sim::HandPicked& picked, const 
 
 // `truth` may be null; else it must outlive the result.
 TruthSource source_of_truth(const TrackOptions& o, const Tracked& tracked, const CornerTruth* truth,
-                            const tracking::Quad& region) {
-  TruthSource source = truth ? truth_of(*truth, o.truth) : truth_of(*tracked.table);
+                            const tracking::Quad& region, std::size_t number) {
+  TruthSource source = truth ? truth_of(*truth, o.truth) : truth_of(*tracked.table, number);
   if (!tracked.points.empty())
     add_point(source, tracked.points, sim::PointTracks::read(tracked.points).choose(tracked.point, region));
   return source;
 }
 
-std::vector<TrackLane> started_lanes(const TrackOptions& o, const Tracked& tracked, const tracking::Camera& lens,
-                                     const TruthKind& truth, const tracking::Frame& frame, const TrackStart& start) {
-  std::vector<TrackLane> lanes;
-  for (const auto& name : chosen_trackers(o, tracked.scene)) {
-    lanes.emplace_back(name, tracking::trackers().make(name, lens, tracked.scene.tracking),
-                       estimator_for(o, *tracked.table), truth,
+// "esm"; where there are several regions "region2", and of several trackers "region2_esm".
+std::string lane_name(const TrackStart& start, const std::string& tracker, bool several_trackers) {
+  if (start.number == 0) return tracker;
+  return fmt::format("region{}{}", start.number, several_trackers ? "_" + tracker : "");
+}
+
+void start_lanes(const TrackOptions& o, const Tracked& tracked, const tracking::Camera& lens, const TruthKind& truth,
+                 const tracking::Frame& frame, const TrackStart& start, std::vector<TrackLane>& lanes) {
+  const auto trackers = chosen_trackers(o, tracked.scene);
+  for (const auto& name : trackers) {
+    lanes.emplace_back(lane_name(start, name, trackers.size() > 1),
+                       tracking::trackers().make(name, lens, tracked.scene.tracking),
+                       estimator_for(o, tracked, start.number > 0 ? start.number - 1 : 0), truth,
                        rows_ahead(tracked.table->frames().frame_count().value_or(0)));
     if (const std::string why = lanes.back().start(frame, start); !why.empty())
-      throw ConfigError(fmt::format("{}: the region cannot be tracked by {}: {}", o.run.source, name, why));
+      throw ConfigError(fmt::format("{}: {} cannot be tracked by {}: {}", o.run.source,
+                                    start.number > 0 ? fmt::format("region {}", start.number) : "the region", name,
+                                    why));
   }
-  return lanes;
 }
 
 std::vector<PaperTable> paper_tables(const Tracked& tracked, const nlohmann::json& trackers) {
@@ -198,11 +219,19 @@ int run_track(TrackOptions o) {
   const tracking::Camera lens = calibrated ? tracked.table->camera() : tracking::Camera{};
   tracking::Frame frame;
   if (!frames.next(frame)) throw InputError(o.run.source + ": there is no frame");
-  TrackStart start = start_of(o, tracked.table->picked(), frame, lens);
-  const TruthSource source = source_of_truth(o, tracked, truth, start.region);
-  if (source.kind.point) start.point = source.at(frame).point;
-  if (!start.point.allFinite()) start.point = start.centre;
-  std::vector<TrackLane> lanes = started_lanes(o, tracked, lens, source.kind, frame, start);
+  const std::size_t regions = region_count(o, tracked);
+  if (regions > 1 && (truth || !tracked.points.empty()))
+    throw ConfigError("--truth and --points score one region; give one --roi or --corners");
+  std::vector<TruthSource> sources;
+  std::vector<TrackLane> lanes;
+  for (std::size_t i = 0; i < regions; ++i) {
+    TrackStart start = start_of(o, tracked.table->picked(i), frame, lens, i, regions);
+    sources.push_back(source_of_truth(o, tracked, truth, start.region, i));
+    if (sources[i].kind.point) start.point = sources[i].at(frame).point;
+    if (!start.point.allFinite()) start.point = start.centre;
+    start_lanes(o, tracked, lens, sources[i].kind, frame, start, lanes);
+  }
+  const TruthSource& source = sources.front();
 
   RunFolder folder(run_path(o.run, "track"));
   const std::size_t expected = frames.frame_count().value_or(0);
@@ -213,9 +242,14 @@ int run_track(TrackOptions o) {
     const Interrupt interrupt;
     Progress progress("track " + stem_of(o.run.source), expected, o.run.quiet);
     do {
-      const TrackTruth known = source.at(frame);
+      TrackTruth known;
+      for (std::size_t i = 0; i < lanes.size(); ++i) {
+        const bool another = i == 0 || lanes[i].began().number != lanes[i - 1].began().number;
+        if (another) known = sources[i * regions / lanes.size()].at(frame);
+        lanes[i].follow(frame, known, now_s);
+      }
+      if (regions > 1) known = source.at(frame);
       with_truth += known.corners.has_value() || known.point.allFinite();
-      for (auto& lane : lanes) lane.follow(frame, known, now_s);
       album.look_at(frame, lanes, known);
       progress.update(++count);
     } while (!(interrupted = interrupt.requested()) && frames.next(frame));
@@ -251,13 +285,11 @@ Command add_track_command(CLI::App& program) {
   TrackOptions& o = *options;
   CLI::App* app = program.add_subcommand("track", "follow a region; several trackers side by side");
   add_run_options(*app, o.run, "image folder, printf pattern, video or scene (.yaml)");
-  add_recording_options(*app, o.recorded);
+  add_recording_options(*app, o.recorded, true);
   add_artificial_options(*app, o.artificial);
   app->add_option("--tracker", o.trackers, "trackers, separated by commas, or 'all'")->delimiter(',');
-  app->add_option("--corners", o.corners, "region as x1,y1,...,x4,y4 in px, clockwise from top left")
-      ->delimiter(',')
-      ->expected(8)
-      ->check(finite(-1e5, 1e5));
+  add_repeatable(*app, "--corners", o.corners, 8,
+                 "region as x1,y1,...,x4,y4 in px, clockwise from top left; again for further regions");
   app->add_option("--square-mm", o.square_mm, "side of the square landmark: metric pose, with --camera")
       ->check(finite(0.1, 1000));
   app->add_option("--truth", o.truth, "CSV of the true corners, as 'heartservo render' writes it")->type_name("FILE");
@@ -272,6 +304,8 @@ Command add_track_command(CLI::App& program) {
       "  heartservo track scenes/pig_2007.yaml --tracker all --frames 250\n"
       "  heartservo track --artificial b --texture retina --side 40 --tracker all\n"
       "  heartservo track frames/ --roi 212,130,50,50 --points POINTS.csv --tracker all\n"
+      "  heartservo track frames/ --roi 212,130,50,50 --roi 150,200,50,50\n"
+      "  heartservo track LEFT --stereo RIGHT --camera STEREO.yaml --roi 150,130,60,60\n"
       "  heartservo track rendered/frames --truth rendered/truth.csv --corners 232,223,286,224,285,278,231,277");
   return {app, [options] { return run_track(*options); }};
 }

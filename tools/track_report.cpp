@@ -76,7 +76,9 @@ TimeTable side_by_side(const std::vector<TrackLane>& lanes) {
     for (double& v : copy) v -= less;
     return copy;
   };
-  const bool corners = first.has("truth/corner0/u_px"), point = first.has("point/u_px");
+  // lanes of several regions have no truth in common: displacements of their centres then
+  const bool one_region = lanes.front().began().number == 0;
+  const bool corners = first.has("truth/corner0/u_px"), point = first.has("point/u_px") && one_region;
   const Eigen::Vector2d& start = lanes.front().began().point;
   // columns u_px, v_px of `group` as displacements of the point
   const auto add_moved = [&](const std::string& name, const TimeTable& t, const std::string& group) {
@@ -93,6 +95,7 @@ TimeTable side_by_side(const std::vector<TrackLane>& lanes) {
       add(lane.name() + "/v_px", copied(t.column("displacement/v_px")));
     }
     if (corners || point) add(lane.name() + "/error_px", copied(t.column(corners ? "error_px" : "point/error_px")));
+    if (t.has("measured/z_m")) add(lane.name() + "/z_m", copied(t.column("measured/z_m")));
     add(lane.name() + "/quality", copied(t.column("track/quality")));
     add(lane.name() + "/state", copied(t.column("track/state")));
     add(lane.name() + "/ms", copied(t.column("timing/track_ms")));
@@ -120,6 +123,7 @@ Report track_report(const json& summary, const TimeTable& table, std::vector<Rep
     return all;
   };
   const bool point = table.has("truth/u_px");
+  const bool depth = table.has(summary["trackers"][0]["name"].get<std::string>() + "/z_m");
   const auto displacement = [&](const char* title, const char* column) {
     ReportPlot plot{title, "px", series(column), 1, point ? "" : "Of the region's centre since the first frame."};
     if (!point) return plot;
@@ -142,6 +146,7 @@ Report track_report(const json& summary, const TimeTable& table, std::vector<Rep
                                   "or not visible.",
                             nullptr, kLeastError_px});
   report.plots.push_back(displacement("Horizontal displacement", "u_px"));
+  if (depth) report.plots.push_back({"Depth", "mm", series("z_m"), 1e3, "Of the region's centre."});
   report.plots.push_back({"Quality", "", series("quality"), 1, "", nullptr});
   report.plots.push_back({"Computing time", "ms", series("ms"), 1, "", nullptr, kLeastTime_ms});
   report.states = series("state");

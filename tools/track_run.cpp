@@ -37,8 +37,10 @@ std::vector<std::string> column_names(const TruthKind& truth, bool metric) {
   }
   if (metric)
     for (const char* name :
-         {"measured/x_m", "measured/y_m", "measured/z_m", "pose/qx", "pose/qy", "pose/qz", "pose/qw"})
+         {"measured/x_m", "measured/y_m", "measured/z_m", "measured/sigma_z_m", "pose/qx", "pose/qy", "pose/qz", "pose/qw"})
       names.emplace_back(name);
+  if (metric && truth.metric)
+    for (const char* name : {"truth/x_m", "truth/y_m", "truth/z_m"}) names.emplace_back(name);
   return names;
 }
 
@@ -92,15 +94,25 @@ const tracking::Track& TrackLane::follow(const tracking::Frame& frame, const Tra
     u_px_.push_back(moved.x());
     v_px_.push_back(moved.y());
   }
-  if (estimator_) {
-    const auto state = estimator_->estimate(track_);
-    const bool known = state.state != TrackState::LOST;
-    const Eigen::Vector3d p = state.T_camera_target.translation();
-    const Eigen::Quaterniond q(state.T_camera_target.linear());
-    for (const double v : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}) row_.push_back(known ? v : NAN);
-  }
+  if (estimator_) measure(frame, truth);
   table_.append(row_);
   return track_;
+}
+
+void TrackLane::measure(const tracking::Frame& frame, const TrackTruth& truth) {
+  estimator_->look_at(frame);
+  const auto state = estimator_->estimate(track_);
+  const bool known = state.state != TrackState::LOST;
+  const Eigen::Vector3d p = state.T_camera_target.translation();
+  const Eigen::Quaterniond q(state.T_camera_target.linear());
+  const double variance = state.position_covariance(2, 2) + state.lasting_covariance(2, 2);
+  for (const double v : {p.x(), p.y(), p.z(), std::sqrt(variance), q.x(), q.y(), q.z(), q.w()})
+    row_.push_back(known ? v : NAN);
+  if (!truth_.metric) return;
+  row_.insert(row_.end(), {truth.position.x(), truth.position.y(), truth.position.z()});
+  if (!known || !truth.position.allFinite()) return;
+  for (int axis = 0; axis < 3; ++axis) errors_m_[static_cast<std::size_t>(axis)].push_back((p - truth.position)[axis]);
+  normalised_ += std::pow((p - truth.position).z(), 2) / variance;
 }
 
 json TrackLane::summary() const {
@@ -108,6 +120,15 @@ json TrackLane::summary() const {
   j["name"] = name_;
   j["ms"] = {
       {"p50", servo::percentile(ms_, 50)}, {"p99", servo::percentile(ms_, 99)}, {"max", servo::percentile(ms_, 100)}};
+  if (start_.number > 0) j["region"] = start_.number;
+  if (!errors_m_[0].empty())
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto e = servo::spread_of(errors_m_[axis]);
+      j["position_error_mm"][std::string(1, "xyz"[axis])] = {
+          {"rms", 1e3 * e.rms}, {"mean", 1e3 * e.mean}, {"std", 1e3 * e.std}, {"max", 1e3 * e.max}};
+    }
+  if (!errors_m_[0].empty())
+    j["position_error_mm"]["normalised_z"] = normalised_ / static_cast<double>(errors_m_[0].size());
   j["displacement_px"] = {{"x", extent(u_px_)}, {"y", extent(v_px_)}};
   return j;
 }

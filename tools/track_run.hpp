@@ -16,6 +16,7 @@ struct TrackStart {
   tracking::Quad region;
   Eigen::Vector2d centre;                                  ///< of the region as the camera sees it (region_centre())
   Eigen::Vector2d point = Eigen::Vector2d::Constant(NAN);  ///< the point to score, if there is one
+  std::size_t number = 0;                                  ///< of the region, from 1; 0 where there is only one
 };
 
 /// One tracker's way through a sequence.
@@ -41,16 +42,21 @@ class TrackLane {
 
   /// This tracker's entry of summary.json: its name, the score, and
   ///   ms               {p50, p99, max} of one frame
+  ///   region           its number, from 1, where there are several
+  ///   position_error_mm  {x, y, z}: {rms, mean, std, max}, normalised_z: mean of (error / standard deviation)^2; of a
+  ///                      metric lane whose true position is known, over the frames that have a pose
   ///   displacement_px  {x, y} of the region's centre since the first frame: {min, max, peak_to_peak, rms}
   nlohmann::json summary() const;
 
   /// Its CSV: time_s, frame/sequence, track/state, track/quality, track/corner0..3, target (the centre of the region),
   /// displacement (of the target since the first frame), error_px (of the corners), timing/track_ms; with the truth
-  /// that there is: truth/corner0..3; point, truth/point, point/error_px; and when metric: measured, pose. A LOST frame
-  /// has no place.
+  /// that there is: truth/corner0..3; point, truth/point, point/error_px; and when metric: measured (with sigma_z_m), pose,
+  /// and truth where known. A LOST frame has no place.
   const TimeTable& table() const { return table_; }
 
  private:
+  void measure(const tracking::Frame& frame, const TrackTruth& truth);
+
   std::string name_;
   std::unique_ptr<tracking::TargetTracker> tracker_;
   std::unique_ptr<tracking::TargetEstimator> estimator_;
@@ -62,6 +68,8 @@ class TrackLane {
   TrackScore::Errors errors_;
   Eigen::Vector2d point_ = Eigen::Vector2d::Constant(NAN);
   std::vector<double> row_, ms_, u_px_, v_px_;
+  std::array<std::vector<double>, 3> errors_m_;
+  double normalised_ = 0;
 };
 
 }  // namespace heartservo::tools

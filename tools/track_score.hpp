@@ -13,13 +13,15 @@ namespace heartservo::tools {
 /// What is known of a frame beside its pixels.
 struct TrackTruth {
   std::optional<tracking::Quad> corners;                   ///< px
-  Eigen::Vector2d point = Eigen::Vector2d::Constant(NAN);  ///< px; NaN where it is not visible
+  Eigen::Vector2d point = Eigen::Vector2d::Constant(NAN);     ///< px; NaN where it is not visible
+  Eigen::Vector3d position = Eigen::Vector3d::Constant(NAN);  ///< m, camera frame, of the region's centre
 };
 
 /// What a sequence's truth holds.
 struct TruthKind {
   bool corners = false;
   std::optional<std::string> point;  ///< its name; "" where it has none
+  bool metric = false;               ///< the position is known
 };
 
 /// A region further off than this, mean of the corners, is another region.

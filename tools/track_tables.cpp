@@ -99,6 +99,8 @@ ReportTable tracker_table(const json& summary) {
     head({"centre px"});
   else if (point)
     head({"point px", "95 %", "max", "95 % with lost"});
+  const bool metric = std::any_of(lanes.begin(), lanes.end(), [](const json& l) { return l.contains("position_error_mm"); });
+  if (metric) head({"x mm", "y mm", "z mm"});
   head({"ms p50", "ms p99", "x p-p px", "y p-p px"});
   for (const json& lane : lanes) {
     std::vector<std::string> row{lane["name"].get<std::string>(), number(lane["lost_frames"], 0),
@@ -114,6 +116,9 @@ ReportTable tracker_table(const json& summary) {
       add("point_error_px", {"median", "p95", "max"});
       row.push_back(lane["point_error_px"].is_null() ? "-" : number(lane["point_error_px"]["with_lost"]["p95"], 3));
     }
+    for (const char* axis : {"x", "y", "z"})
+      if (metric)
+        row.push_back(lane.contains("position_error_mm") ? number(lane["position_error_mm"][axis]["rms"], 3) : "-");
     add("ms", {"p50", "p99"});
     for (const char* axis : {"x", "y"}) {
       const json& d = lane["displacement_px"][axis];
@@ -131,6 +136,7 @@ ReportTable tracker_table(const json& summary) {
         "which it is visible and not lost; with lost: those too, at the place last believed.",
         table.note.empty() ? "" : " ", name.empty() ? "" : " " + name);
   }
+  if (metric) table.note += " x, y, z: RMS error of the metric position.";
   if (truth) {
     const json& bounds = lanes[0]["wrong_over_px"];
     std::string over;

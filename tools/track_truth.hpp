@@ -30,7 +30,7 @@ Eigen::Vector2d true_target_px(const sim::Table& table, const servo::TruthSample
 
 /// Of a simulated scene or an artificial sequence: corners, and the centre as a point called "target". Nothing of a
 /// recorded one. `table` must outlive the result.
-TruthSource truth_of(const sim::Table& table);
+TruthSource truth_of(const sim::Table& table, std::size_t region = 0);
 
 /// The same from a file; the point where the file has it. `truth` must outlive the result.
 TruthSource truth_of(const CornerTruth& truth, const std::string& file);

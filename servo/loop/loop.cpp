@@ -61,10 +61,16 @@ void Loop::perceive(LoopRecord& record) {
   record.track = stages_.target_tracker->track(record.frame);
   if (stages_.marker_tracker) record.marker_track = stages_.marker_tracker->track(record.frame);
   record.track_ms = 1e3 * (stopwatch_() - begin);
+  stages_.target_estimator->look_at(record.frame);
   record.target = stages_.target_estimator->estimate(record.track);
   if (stages_.marker_estimator) record.marker = stages_.marker_estimator->estimate(record.marker_track);
   record.encoders = robot_.read(time);
   record.tip = tip_of(record);
+  if (stages_.ecg)
+    stages_.ecg->advance(time, [&](const RPeak& peak) {
+      stages_.predictor->observe_beat(peak.time_s);
+      record.r_peak_s = peak.time_s;
+    });
   bool seen = !record.stale && record.target.state != TrackState::LOST;
   if (seen) {
     Eigen::Vector3d goal = record.target.T_camera_target * options_.offset_m;
@@ -81,11 +87,18 @@ void Loop::perceive(LoopRecord& record) {
     MotionSample sample{time, record.carried, record.target.position_covariance};
     if (record.target.state == TrackState::UNCERTAIN) sample.covariance *= 25;  // five times the standard deviation
     stages_.predictor->observe(sample);
+    seen_goals_.extend(record.carried);
   }
-  record.mode = supervisor_.update(time, seen, stages_.predictor->predict(time).valid);
+  record.mode = supervisor_.update(time, seen, seen ? stages_.predictor->predict(time).valid : may_coast(time));
   record.depth_m = force_.depth(time);
   force_.update(time, record.encoders.force_n, period, record.mode == LoopMode::FOLLOW);
   record.force_wanted_n = force_.phase() == ForcePhase::PRESS ? options_.force.wanted_n : 0;
+}
+
+// A polynomial leads further and further away; a heart comes back to where it was.
+bool Loop::may_coast(double time_s) const {
+  const Prediction goal = stages_.predictor->predict(time_s + options_.latency.total_s() + robot_data_.lag_s);
+  return goal.valid && seen_goals_.exteriorDistance(goal.position) <= options_.guard.coast_beyond_m;
 }
 
 // The tip in the camera frame. Eye-in-hand the camera frame is that of the first picture, and the "tip" the place at

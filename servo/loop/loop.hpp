@@ -1,13 +1,15 @@
 #pragma once
 // One pass of the house per frame: Frame -> Track -> TargetState -> Prediction -> law -> feed-forward -> filter ->
-// limits -> finite check -> ToolRobot. The only place that knows the order, the clock and the latency. Truth is no part of any type in here; a score (score.hpp)
-// watches from outside.
+// limits -> finite check -> ToolRobot. The only place that knows the order, the clock and the latency. Truth is no part
+// of any type in here; a score (score.hpp) watches from outside.
+#include <Eigen/Geometry>
 #include <functional>
 #include <memory>
 #include <string>
 
 #include "servo/control/control_law.hpp"
 #include "servo/control/low_pass.hpp"
+#include "servo/ecg/ecg_monitor.hpp"
 #include "servo/loop/loop_options.hpp"
 #include "servo/loop/loop_record.hpp"
 #include "servo/prediction/motion_predictor.hpp"
@@ -29,6 +31,7 @@ struct LoopStages {
   std::unique_ptr<tracking::TargetTracker> target_tracker, marker_tracker;
   std::unique_ptr<tracking::TargetEstimator> target_estimator, marker_estimator;
   std::unique_ptr<MotionPredictor> predictor;
+  std::unique_ptr<EcgMonitor> ecg;  ///< null: none; its beats reach the predictor
   std::unique_ptr<ControlLaw> control_law;
   /// Corners picked by hand in the first frame -> subpixel corners; empty: as picked.
   std::function<tracking::Quad(const tracking::Frame&, const tracking::Quad&)> refine_target, refine_marker;
@@ -56,6 +59,7 @@ class Loop {
   void decide(LoopRecord& record);
   Eigen::Vector3d tip_of(const LoopRecord& record);
   Eigen::Vector3d wanted(LoopRecord& record, double acts_at);
+  bool may_coast(double time_s) const;
   void turn_to(const Eigen::Matrix3d& R_camera_target);
   Prediction goal_at(double time_s) const;
   Eigen::Vector3d shift_at(double time_s) const;
@@ -78,6 +82,7 @@ class Loop {
   std::function<double()> stopwatch_;
   tracking::Frame frame_;
   Eigen::Matrix3d R_camera_target_ = Eigen::Matrix3d::Identity();  // smoothed
+  Eigen::AlignedBox3d seen_goals_;  // of LoopRecord::carried, camera frame, m
   Eigen::Vector3d encoders_start_ = Eigen::Vector3d::Zero();           // camera frame, m; eye-in-hand
   Eigen::Vector3d view_ = Eigen::Vector3d::Constant(NAN);              // the place held in the picture; eye-in-hand
   Eigen::Vector3d last_velocity_ = Eigen::Vector3d::Zero();  // camera frame

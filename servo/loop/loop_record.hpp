@@ -23,6 +23,7 @@ struct LoopRecord {
   double depth_m = 0;          ///< what the force loop adds along the tissue's normal
   double force_wanted_n = 0;   ///< 0 unless the tip is to press now
   Prediction goal_then;                                       ///< when the command acts, robot lag included
+  double r_peak_s = NAN;  ///< of the ECG, where one has become known with this frame; before it
   LoopMode mode = LoopMode::HOLD;
   bool stale = false;        ///< the frame was late or repeated, and not used
   bool implausible = false;  ///< the target jumped further than it can, and was not believed

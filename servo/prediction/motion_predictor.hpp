@@ -25,6 +25,12 @@ class MotionPredictor {
   /// Samples that are not finite, or not later than the last one, are ignored.
   virtual void observe(const MotionSample& sample) = 0;
 
+  /// A heartbeat: the time (s, the samples' clock) of its R peak. Called when the beat has become known, which is after
+  /// it happened: `r_peak_s` may be older than samples already observed, never later than the time of the call. Beats
+  /// come in the order in which they happened; one may be missing, or be none. Those that are not finite, or not later
+  /// than the last one, are ignored. Predictors that know nothing of hearts ignore all.
+  virtual void observe_beat(double r_peak_s) { (void)r_peak_s; }
+
   /// `time_s` may be any time after the last sample.
   virtual Prediction predict(double time_s) const = 0;
 };

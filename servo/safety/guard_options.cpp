@@ -19,9 +19,15 @@ void GuardOptions::fields(FieldVisitor& v) {
   v.field({"max_error_s", "s", "see max_error_m", 0, 10}, max_error_s);
   v.field({"coast_s", "s", "how long a lost target is followed on its prediction before the tool holds still", 0, 10},
           coast_s);
+  v.field({"coast_beyond_m", "m",
+           "a lost target whose prediction goes further than this beyond all places where it was seen is not followed",
+           0, 10},
+          coast_beyond_m);
   v.field({"hold_s", "s", "how long the tool then stands where the target was last seen before it retracts", 0, 1000},
           hold_s);
-  v.field({"retract_m", "m", "how far it retracts along its axis, half of the workspace at most; 0: it goes on standing", 0, 0.2}, retract_m);
+  v.field({"retract_m", "m",
+           "how far it retracts along its axis, half of the workspace at most; 0: it goes on standing", 0, 0.2},
+          retract_m);
   v.field({"retract_speed", "m/s", "fastest on the way back to the last safe place and while retracting", 1e-3, 1},
           retract_speed);
   v.field({"approach_speed", "m/s", "fastest on the way to the goal when following is resumed", 1e-3, 1},

@@ -19,6 +19,7 @@ struct GuardOptions {
   double max_error_s = 0.25;  ///< s
   // lost targets
   double coast_s = 0.15;          ///< s
+  double coast_beyond_m = 0.004;  ///< m
   double hold_s = 0.5;            ///< s
   double retract_m = 0.01;        ///< m
   double retract_speed = 0.03;    ///< m/s

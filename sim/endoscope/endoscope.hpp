@@ -28,9 +28,12 @@ class Endoscope {
   /// none. Noise is that of `frame_index`.
   void render(double t, std::uint64_t frame_index, cv::Mat& grey, const ToolPose* tool = nullptr);
 
-  /// Moves the endoscope: it takes its pictures from `shift` (m) off its first place, without turning. The tool is not
-  /// moved with it: its pose stays relative to the camera.
-  void move_to(const Eigen::Vector3d& shift) { shift_ = shift; }
+  /// Looks from `view_m` from now on, without turning; all else stays given in the first camera frame. The lamp moves by
+  /// `lamp_m`: as far as the view where the robot carries the endoscope, as far as the left endoscope for the right view
+  /// of a stereo pair.
+  void move_view(const Eigen::Vector3d& view_m, const Eigen::Vector3d& lamp_m = Eigen::Vector3d::Zero());
+
+  std::shared_ptr<const TissueTexture> texture() const { return texture_; }
 
   /// Changes exposure from now on: lamp, gain drift, automatic control. 1 and the options' bias at first.
   void set_light(double gain, double bias_grey);
@@ -46,9 +49,9 @@ class Endoscope {
   PictureOptions options_;
   std::shared_ptr<const TissueTexture> texture_;
   SurfaceNodes nodes_;
+  Eigen::Vector3d view_m_ = Eigen::Vector3d::Zero();
   ToolView tool_;
   SurfaceState state_;
-  Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();
   std::unique_ptr<Workspace> workspace_;
 };
 

@@ -19,6 +19,9 @@ class SurfaceNodes {
   /// Solves nodes [first, last) for the surface; nodes are independent of each other.
   void solve(const SurfaceState& state, int first, int last);
 
+  /// m, in the frame of the camera that looks.
+  void set_lamp(const Eigen::Vector3d& light_m) { light_m_ = light_m; }
+
   const NodeGrid& grid() const { return grid_; }
   const float* planes() const { return planes_.data(); }  ///< kChannels planes of grid().size()
 

@@ -38,6 +38,18 @@ std::vector<double> cycle_marks(const CycleStatistics& statistics, double durati
   return marks;
 }
 
+std::vector<double> with_ectopic_beats(std::vector<double> marks, double share, double advance, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> chance;
+  bool early = true;
+  for (std::size_t i = 1; i + 2 < marks.size(); ++i) {
+    const double drawn = chance(random);
+    early = !early && drawn < share;
+    if (early) marks[i] -= advance * (marks[i] - marks[i - 1]);
+  }
+  return marks;
+}
+
 std::vector<double> plausible_beats(std::vector<double> r_peaks_s) {
   std::sort(r_peaks_s.begin(), r_peaks_s.end());
   std::vector<double> beats;

@@ -23,7 +23,12 @@ struct CycleStatistics {
 /// phase), the last after duration_s. Periods stay within 4 standard deviations and above half the mean.
 std::vector<double> cycle_marks(const CycleStatistics& statistics, double duration_s, std::uint64_t seed);
 
-/// The same for R peaks read from an ECG (s, any order): sorted, without peaks that follow another by less than
+/// Makes beats come early: each with probability `share`, never two in a row nor the first and last two, by `advance`
+/// of the interval before it; the next one comes when it would have come anyway (a compensatory pause, as after a
+/// ventricular ectopic beat).
+std::vector<double> with_ectopic_beats(std::vector<double> marks_s, double share, double advance, std::uint64_t seed);
+
+/// R peaks read from an ECG (s, any order): sorted, without peaks that follow another by less than
 /// systole plus 0.1 s, which this heart could not beat.
 std::vector<double> plausible_beats(std::vector<double> r_peaks_s);
 

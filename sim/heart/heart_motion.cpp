@@ -30,7 +30,8 @@ PhaseClock respiration_clock(const HeartMotionOptions& o, std::uint64_t seed, do
 
 std::vector<double> drawn_beats(const HeartMotionOptions& o, std::uint64_t seed, double duration_s) {
   const auto marks = cycle_marks({o.heart_rate_hz, o.beat_variability, o.beat_correlation}, duration_s, seed);
-  return plausible_beats(marks);
+  // ectopic beats have a sequence of their own: without them the others stay as they are
+  return plausible_beats(with_ectopic_beats(marks, o.ectopic_share, o.ectopic_advance, seed ^ 0xec70b1cull));
 }
 
 }  // namespace

@@ -25,6 +25,9 @@ struct HeartMotionOptions {
   double beat_correlation = 0.3;
   double respiration_variability = 0.005;
   double breathing_modulation = 0.1;
+  double ectopic_share = 0, ectopic_advance = 0.3;
+  std::string beats;
+  double beats_rate_hz = 360;
 
   void fields(FieldVisitor& v) {
     v.choice({"profile", "",
@@ -43,6 +46,15 @@ struct HeartMotionOptions {
             respiration_variability);
     v.field({"breathing_modulation", "", "by how much breathing changes the beat's amplitude", 0, 0.5},
             breathing_modulation);
+    v.field({"ectopic_share", "", "share of beats that come early, each followed by a pause", 0, 0.5}, ectopic_share);
+    v.field({"ectopic_advance", "", "by which share of the beat's period they come early", 0, 0.6}, ectopic_advance);
+    v.field({"beats", "",
+             "file of R peaks to beat by instead of drawn ones, relative to the scene: CSV with time_s or, in its last "
+             "column, sample numbers; or WFDB annotations (.atr); the run begins at ecg.start_s"},
+            beats);
+    v.field({"beats_rate_hz", "Hz", "samples per second where motion.beats counts samples; that of ecg.record if given",
+             1, 100000},
+            beats_rate_hz);
   }
 
   /// Every problem at once, empty when usable.

@@ -16,6 +16,31 @@
 
 namespace heartservo::sim {
 
+namespace {
+
+// What region_depth and stereo_depth need of the scene.
+void check_depth(const Scene& scene, std::vector<std::string>& problems) {
+  for (const auto& problem : scene.depth.assumed.validate()) problems.push_back("depth." + problem);
+  for (const auto& problem : scene.stereo.matching.validate()) problems.push_back("stereo." + problem);
+  const bool two_views = scene.is_recorded() ? !scene.recording.right.empty() : scene.stereo.baseline_m > 0;
+  const bool region = scene.engines.estimator == "region_depth", stereo = scene.engines.estimator == "stereo_depth";
+  const char* missing = scene.is_recorded() ? "recording.right" : "stereo.baseline_m above 0";
+  if (stereo && !two_views) problems.push_back(fmt::format("engines.estimator: stereo_depth needs {}", missing));
+  if (region && scene.depth.source == "stereo" && !two_views)
+    problems.push_back(fmt::format("depth.source: stereo needs {}", missing));
+  if (region && scene.depth.source == "landmark" &&
+      (scene.is_recorded() || scene.depth.landmark >= static_cast<int>(scene.surface.landmarks.size())))
+    problems.push_back(fmt::format("depth.landmark is {} but {}", scene.depth.landmark,
+                                   scene.is_recorded()
+                                       ? std::string("recorded frames have no landmark of known size")
+                                       : fmt::format("surface.landmarks has {} entries",
+                                                     scene.surface.landmarks.size())));
+  if (!scene.recording.right.empty() && scene.camera.calibration.empty())
+    problems.emplace_back("recording.right needs camera.calibration, a stereo file");
+}
+
+}  // namespace
+
 void EngineOptions::fields(FieldVisitor& v) {
   v.choice({"tracker", "", "follows the region and the tool's marker"}, tracker, tracking::trackers().names());
   v.choice({"estimator", "", "pixels to metres"}, estimator, tracking::estimators().names());
@@ -31,8 +56,12 @@ void Scene::fields(FieldVisitor& v) {
   v.group("camera", "the endoscope's camera", camera);
   v.group("recording", "frames from disk instead of the simulated heart", recording);
   v.group("motion", "how the simulated heart moves", motion);
+  v.group("ecg", "an ECG beside the frames, for predictors that know the heartbeat", ecg);
   v.group("surface", "shape, deformation and landmarks of the simulated heart", surface);
   v.group("target", "what the loop follows on the simulated heart", target);
+  v.list("more_targets", "further regions that the command track follows", more_targets);
+  v.group("depth", "depth of a region without landmark, for engines.estimator: region_depth", depth);
+  v.group("stereo", "the second view of a stereo endoscope", stereo);
   v.group("picture", "light, lens, sensor and texture of the simulated picture", picture);
   v.group("tool", "the tool as it looks in the picture", tool);
   v.group("robot", "the robot that carries the tool", robot);
@@ -45,6 +74,10 @@ void Scene::fields(FieldVisitor& v) {
 
 std::size_t Scene::frame_count() const {
   return static_cast<std::size_t>(std::lround(duration_s * camera.frame_rate_hz));
+}
+
+std::size_t Scene::region_count() const {
+  return is_recorded() ? std::max<std::size_t>(1, recording.roi.size() / 4) : 1 + more_targets.size();
 }
 
 std::vector<std::string> Scene::validate() const {
@@ -60,10 +93,15 @@ std::vector<std::string> Scene::validate() const {
   if (target.landmark >= static_cast<int>(surface.landmarks.size()) && !is_recorded())
     problems.push_back(fmt::format("target.landmark is {} but surface.landmarks has {} entries", target.landmark,
                                    surface.landmarks.size()));
-  if (!recording.roi.empty() && recording.roi.size() != 4)
-    problems.emplace_back("recording.roi must be x, y, width, height");
-  else if (recording.roi.size() == 4 && !(recording.roi[2] > 0 && recording.roi[3] > 0))
-    problems.emplace_back("recording.roi needs a width and a height above 0");
+  for (std::size_t i = 0; i < more_targets.size() && !is_recorded(); ++i)
+    if (more_targets[i].landmark >= static_cast<int>(surface.landmarks.size()))
+      problems.push_back(fmt::format("more_targets[{}].landmark is {} but surface.landmarks has {} entries", i,
+                                     more_targets[i].landmark, surface.landmarks.size()));
+  if (recording.roi.size() % 4 != 0) problems.emplace_back("recording.roi must be x, y, width, height");
+  for (std::size_t i = 0; i + 3 < recording.roi.size(); i += 4)
+    if (!(recording.roi[i + 2] > 0 && recording.roi[i + 3] > 0))
+      problems.emplace_back("recording.roi needs a width and a height above 0");
+  check_depth(*this, problems);
   if (!recording.point.empty() && recording.reference.empty())
     problems.emplace_back("recording.point names a point of recording.reference, which is not given");
   if (tracking.uncertain_quality > tracking.ok_quality)
@@ -71,15 +109,20 @@ std::vector<std::string> Scene::validate() const {
   if (!(loop.latency.total_s() < 2)) problems.emplace_back("loop.latency adds up to 2 s or more");
   if (tool.marker_side_m <= 0 && loop.tip.use_marker)
     problems.emplace_back("loop.tip.use_marker needs tool.marker_side_m above 0");
-  if (is_recorded() && engines.estimator != "assumed_depth")
-    problems.emplace_back("recorded frames have no landmark of known size: engines.estimator must be assumed_depth");
+  if (is_recorded() && engines.estimator.rfind("landmark", 0) == 0)
+    problems.emplace_back(
+        "recorded frames have no landmark of known size: engines.estimator must be assumed_depth, region_depth or "
+        "stereo_depth");
   if (is_recorded() && (loop.force.on() || loop.eye_in_hand))
     problems.emplace_back("loop.force and loop.eye_in_hand need a simulated heart: recorded frames cannot be touched or moved");
   if (loop.eye_in_hand && loop.tip.use_marker)
     problems.emplace_back("loop.eye_in_hand shows no tool: loop.tip.use_marker must be false");
   if (is_recorded() && loop.path.type != "hold")
     problems.emplace_back("loop.path needs the heart's orientation, which recorded frames do not tell: it must be hold");
+  if (is_recorded() && ecg.source == "simulated")
+    problems.emplace_back("ecg.source: recorded frames have no simulated heart; give a recorded ECG");
   add(motion.validate());
+  add(ecg.validate());
   add(surface.validate());
   add(picture.validate());
   add(tool.validate());

@@ -8,9 +8,11 @@
 #include "sim/endoscope/occlusion.hpp"
 #include "sim/endoscope/picture_options.hpp"
 #include "sim/endoscope/tool_view.hpp"
+#include "sim/heart/ecg_options.hpp"
 #include "sim/heart/heart_motion.hpp"
 #include "sim/heart/heart_surface.hpp"
 #include "sim/robot/robot_options.hpp"
+#include "sim/scene/depth_scene.hpp"
 #include "sim/tissue/kelvin_voigt.hpp"
 #include "tracking/planar/planar_tracker.hpp"
 #include "tracking/settings/fields.hpp"
@@ -33,7 +35,7 @@ struct CameraOptions {
 
 /// Frames from disk instead of the simulated heart; the tool is virtual and drawn into them.
 struct RecordingOptions {
-  std::string source;
+  std::string source, right;
   double depth_m = 0.045;
   std::vector<double> roi;
   std::string reference, point;
@@ -41,8 +43,15 @@ struct RecordingOptions {
   void fields(FieldVisitor& v) {
     v.field({"source", "", "image folder, printf pattern or video, relative to the scene; empty: the simulated heart"},
             source);
+    v.field({"right", "",
+             "the right view of a stereo endoscope, as source; camera.calibration must be a stereo file then; empty: one "
+             "view"},
+            right);
     v.field({"depth_m", "m", "assumed distance of the region from the camera", 1e-3, 10}, depth_m);
-    v.field({"roi", "px", "region to follow in the first frame: x, y, width, height", -1e5, 1e5}, roi, 0);
+    v.field({"roi", "px",
+             "region to follow in the first frame: x, y, width, height; further regions of the command track after it",
+             -1e5, 1e5},
+            roi, 0);
     v.field({"reference", "",
              "CSV with frame (from 1) or time_s, u_px, v_px, optionally point and visible: where points of the region "
              "truly "
@@ -63,7 +72,7 @@ struct TargetOptions {
     v.field({"landmark", "", "index of the landmark to follow; -1: the tissue at x_m, y_m", -1, 100}, landmark);
     v.field({"x_m", "m", "centre of the tissue region, material coordinates", -0.03, 0.03}, x_m);
     v.field({"y_m", "m", "centre of the tissue region, material coordinates", -0.03, 0.03}, y_m);
-    v.field({"side_m", "m", "side of the tissue region", 0.001, 0.03}, side_m);
+    v.field({"side_m", "m", "side of the tissue region", 0.001, 0.05}, side_m);
     v.field({"pick_error_px", "px", "how far off the corners picked by hand in the first frame may be", 0, 10},
             pick_error_px);
   }
@@ -71,8 +80,7 @@ struct TargetOptions {
 
 /// Engines by name.
 struct EngineOptions {
-  std::string tracker = "esm", estimator = "landmark_refined", predictor = "constant_velocity",
-              controller = "ibvs_feedforward";
+  std::string tracker = "esm", estimator = "landmark_refined", predictor = "mixture", controller = "ibvs_feedforward";
   void fields(FieldVisitor& v);
 };
 
@@ -83,8 +91,12 @@ struct Scene {
   CameraOptions camera;
   RecordingOptions recording;
   HeartMotionOptions motion;
+  EcgOptions ecg;
   HeartSurfaceOptions surface;
   TargetOptions target;
+  std::vector<TargetOptions> more_targets;
+  ScaleOptions depth;
+  StereoViewOptions stereo;
   PictureOptions picture;
   ToolOptions tool;
   RobotOptions robot;
@@ -99,6 +111,8 @@ struct Scene {
   std::size_t max_frames = 0;  ///< 0: all of them
   bool show_tool = true;       ///< false: a look at the heart alone
 
+  /// Regions that `track` follows: the target and more_targets, or those of recording.roi.
+  std::size_t region_count() const;
   bool is_recorded() const { return !recording.source.empty(); }
   std::size_t frame_count() const;
   void fields(FieldVisitor& v);

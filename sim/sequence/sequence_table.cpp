@@ -17,7 +17,7 @@ class SequenceTable final : public Table {
   tracking::FrameSource& frames() override { return sequence_; }
   servo::ToolRobot& robot() override { throw std::logic_error("an artificial sequence has no robot"); }
   const tracking::Camera& camera() const override { return camera_; }
-  HandPicked picked() const override {
+  HandPicked picked(std::size_t) const override {
     HandPicked picked;
     picked.target = sequence_.region();
     return picked;
@@ -25,9 +25,9 @@ class SequenceTable final : public Table {
   Eigen::Vector3d marker_to_tip() const override { return Eigen::Vector3d::Zero(); }
   Eigen::Vector3d tool_axis() const override { return {0, 0, -1}; }
   Eigen::Vector3d offset() const override { return Eigen::Vector3d::Zero(); }
-  double region_side_m() const override { return 0; }
+  double region_side_m(std::size_t) const override { return 0; }
   double marker_side_m() const override { return 0; }
-  servo::TruthSample truth(const servo::LoopRecord& record) const override {
+  servo::TruthSample truth(const servo::LoopRecord& record, std::size_t) const override {
     servo::TruthSample truth;
     truth.corners_px = sequence_.corners(record.frame.sequence);
     return truth;

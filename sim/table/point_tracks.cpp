@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/table/csv_rows.hpp"
+#include "tracking/settings/csv_rows.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_reader.hpp"
 

@@ -9,9 +9,11 @@
 #include "sim/endoscope/tool_view.hpp"
 #include "sim/robot/registry.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/table/heart_beats.hpp"
 #include "sim/table/point_tracks.hpp"
 #include "sim/table/table.hpp"
 #include "tracking/frames/open_source.hpp"
+#include "tracking/frames/stereo_pair.hpp"
 #include "tracking/settings/errors.hpp"
 
 namespace heartservo::sim {
@@ -24,8 +26,9 @@ class RecordedTable final : public Table, private tracking::FrameSource {
  public:
   explicit RecordedTable(const Scene& scene)
       : scene_(scene),
-        source_(tracking::open_source(resolve(scene, scene.recording.source), scene.camera.frame_rate_hz)),
+        source_(open_views(scene)),
         camera_(camera_of(scene, source_->size().width, source_->size().height)),
+        stereo_(stereo_of(scene)),
         region_(picked_region()),
         side_(roomier_side()),
         offset_(chosen_offset()),
@@ -43,21 +46,28 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   Eigen::Vector3d marker_to_tip() const override { return -tool_.marker_offset_m; }
   Eigen::Vector3d tool_axis() const override { return tool_.direction.normalized(); }
   Eigen::Vector3d offset() const override { return offset_; }
-  double region_side_m() const override { return 0; }
+  double region_side_m(std::size_t) const override { return 0; }
   double marker_side_m() const override { return tool_.marker_side_m; }
   std::string reference() const override { return reference_ ? reference_->file : "tracked"; }
   std::string reference_point() const override { return reference_ ? reference_->point.name : ""; }
 
-  HandPicked picked() const override {
+  std::optional<tracking::StereoCamera> stereo() const override { return stereo_; }
+  std::unique_ptr<servo::EcgSource> ecg() const override { return heart_ecg(scene_, {}, 0); }
+
+  HandPicked picked(std::size_t region) const override {
     const auto corners = marker_corners(tool_, start_tip_);
     HandPicked picked;
-    picked.target = region_;
+    picked.target = picked_region(region);
+    if (scene_.depth.source == "distance")
+      picked.scale = tracking::known_scale({scene_.recording.depth_m, scene_.depth.sigma_m});
+    else if (scene_.depth.source == "stereo" && stereo_)
+      picked.scale = tracking::stereo_scale(*stereo_, scene_.stereo.matching);
     picked.marker_edge_ratio = kFrameEdge;
     for (std::size_t i = 0; i < 4; ++i) picked.marker[i] = camera_.project(corners[i]);
     return picked;
   }
 
-  servo::TruthSample truth(const servo::LoopRecord& record) const override {
+  servo::TruthSample truth(const servo::LoopRecord& record, std::size_t) const override {
     servo::TruthSample truth;
     truth.tip_px = camera_.project(tip_);
     if (reference_)
@@ -103,10 +113,26 @@ class RecordedTable final : public Table, private tracking::FrameSource {
       reference_->goal_from_point_px += tracking::centre(region_) - reference_->point.at(0, 0);
   }
 
-  tracking::Quad picked_region() const {
+  static std::unique_ptr<tracking::FrameSource> open_views(const Scene& scene) {
+    const double rate_hz = scene.camera.frame_rate_hz;
+    auto left = tracking::open_source(resolve(scene, scene.recording.source), rate_hz);
+    if (scene.recording.right.empty()) return left;
+    return tracking::pair_views(std::move(left), tracking::open_source(resolve(scene, scene.recording.right), rate_hz));
+  }
+  static std::optional<tracking::StereoCamera> stereo_of(const Scene& scene) {
+    if (scene.recording.right.empty()) return std::nullopt;
+    const std::string file = resolve(scene, scene.camera.calibration);
+    if (!tracking::is_stereo_file(file))
+      throw InputError(file + ": is no stereo calibration (it has no M2); a right view needs both cameras and where "
+                              "they stand, as 'heartservo calibrate' writes them for a stereo pair");
+    return tracking::read_stereo_camera(file);
+  }
+
+  tracking::Quad picked_region(std::size_t region = 0) const {
     const auto& roi = scene_.recording.roi;
     const double w = camera_.width, h = camera_.height;
-    if (roi.size() == 4) return tracking::rectangle(roi[0], roi[1], roi[2], roi[3]);
+    if (const std::size_t i = 4 * region; roi.size() >= i + 4)
+      return tracking::rectangle(roi[i], roi[i + 1], roi[i + 2], roi[i + 3]);
     const double side = std::round(0.2 * std::min(w, h));  // without a choice: the middle of the picture
     return tracking::rectangle(std::round((w - side) / 2), std::round((h - side) / 2), side, side);
   }
@@ -135,6 +161,7 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   Scene scene_;
   std::unique_ptr<tracking::FrameSource> source_;
   tracking::Camera camera_;
+  std::optional<tracking::StereoCamera> stereo_;
   tracking::Quad region_;
   Eigen::Vector2d side_;
   Eigen::Vector3d offset_;

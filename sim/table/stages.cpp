@@ -25,6 +25,19 @@ auto refiner(const tracking::Camera& camera, double edge_ratio) {
 
 }  // namespace
 
+tracking::EstimatorOptions estimator_options(const Scene& scene, const Table& table, std::size_t region) {
+  tracking::EstimatorOptions estimator;
+  estimator.camera = table.camera();
+  estimator.side_m = table.region_side_m(region);
+  estimator.depth_m = scene.recording.depth_m;
+  estimator.corner_sigma_px = scene.tracking.corner_sigma_px;
+  estimator.scale = table.picked(region).scale;
+  estimator.depth = scene.depth.assumed;
+  estimator.stereo = table.stereo();
+  estimator.matching = scene.stereo.matching;
+  return estimator;
+}
+
 servo::ControlSetup control_setup(const Scene& scene, Table& table) {
   servo::ControlSetup setup;
   setup.options = scene.loop.control;
@@ -39,11 +52,7 @@ servo::LoopStages make_stages(const Scene& scene, Table& table) {
   servo::LoopStages stages;
   const tracking::Camera& camera = table.camera();
   const HandPicked picked = table.picked();
-  tracking::EstimatorOptions estimator;
-  estimator.camera = camera;
-  estimator.side_m = table.region_side_m();
-  estimator.depth_m = scene.recording.depth_m;
-  estimator.corner_sigma_px = scene.tracking.corner_sigma_px;
+  tracking::EstimatorOptions estimator = estimator_options(scene, table);
   stages.target_tracker = tracking::trackers().make(scene.engines.tracker, camera, scene.tracking);
   stages.target_estimator = tracking::estimators().make(scene.engines.estimator, estimator);
   stages.refine_target = refiner(camera, picked.target_edge_ratio);
@@ -53,6 +62,7 @@ servo::LoopStages make_stages(const Scene& scene, Table& table) {
     stages.marker_estimator = tracking::estimators().make("landmark_refined", estimator);
     stages.refine_marker = refiner(camera, picked.marker_edge_ratio);
   }
+  if (auto ecg = table.ecg()) stages.ecg = std::make_unique<servo::EcgMonitor>(std::move(ecg));
   stages.predictor = servo::predictors().make(scene.engines.predictor, scene.loop.prediction);
   stages.control_law = servo::control_laws().make(scene.engines.controller, control_setup(scene, table));
   return stages;

@@ -1,6 +1,7 @@
 #pragma once
 #include "servo/control/registry.hpp"
 #include "servo/loop/loop.hpp"
+#include "tracking/landmark/registry.hpp"
 
 namespace heartservo::sim {
 
@@ -18,6 +19,9 @@ std::vector<servo::PathPoint> read_path(const std::string& file);
 
 /// The path that the scene asks for. Throws InputError.
 servo::SurgeonPath surgeon_path(const Scene& scene);
+
+/// What an estimator of the region (Scene::region_count()) is made from.
+tracking::EstimatorOptions estimator_options(const Scene& scene, const Table& table, std::size_t region = 0);
 
 /// The scene's loop options with what only the table knows: frame rate and offset.
 servo::LoopOptions loop_options(const Scene& scene, Table& table);

@@ -91,6 +91,31 @@ struct FakeLaw final : servo::ControlLaw {
   }
 };
 
+/// Beats once a second from -5 s on; remembers how far it was asked to look.
+struct FakeEcg final : servo::EcgSource {
+  std::vector<double>* asked;
+  long at = -5 * 250;
+  explicit FakeEcg(std::vector<double>* a) : asked(a) {}
+  double rate_hz() const override { return 250; }
+  bool next(double until_s, servo::EcgSample& sample) override {
+    if (asked->empty() || until_s > asked->back()) asked->push_back(until_s);
+    const double t = static_cast<double>(at) / 250, since = t - std::round(t);
+    if (t > until_s) return false;
+    sample = {t, std::exp(-0.5 * since * since / 1e-4)};
+    ++at;
+    return true;
+  }
+};
+
+/// Remembers the beats it was told; foresees nothing.
+struct FakePredictor final : servo::MotionPredictor {
+  std::vector<double>* beats;
+  explicit FakePredictor(std::vector<double>* b) : beats(b) {}
+  void observe(const servo::MotionSample&) override {}
+  void observe_beat(double r_peak_s) override { beats->push_back(r_peak_s); }
+  servo::Prediction predict(double) const override { return {}; }
+};
+
 /// Set what you like, then run().
 struct FakeBench {
   FakeFrames frames;

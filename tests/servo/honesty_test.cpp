@@ -31,6 +31,7 @@ constexpr bool kClosed = closed_to<Value, TruthSample, TruthSample&, sim::Scene,
 static_assert(kClosed<tracking::Frame> && kClosed<tracking::Track> && kClosed<tracking::TargetState>);
 static_assert(kClosed<servo::MotionSample> && kClosed<servo::Prediction> && kClosed<servo::ControlState>);
 static_assert(kClosed<servo::ToolState> && kClosed<servo::ToolCommand> && kClosed<servo::LoopRecord>);
+static_assert(kClosed<servo::EcgSample> && kClosed<servo::EcgMonitor> && kClosed<servo::RPeak>);
 static_assert(kClosed<servo::LoopOptions> && kClosed<servo::LoopStages>);
 static_assert(!closed_to<TruthSample, const TruthSample&>, "the check itself can fail");
 
@@ -39,6 +40,8 @@ constexpr bool refuses = (!std::is_invocable_v<Method, Stage&, Knowing> && ...);
 
 static_assert(refuses<decltype(&servo::MotionPredictor::observe), servo::MotionPredictor, TruthSample, sim::Table&,
                       sim::Scene, sim::HeartMotion>);
+static_assert(
+    refuses<decltype(&servo::RPeakDetector::next), servo::RPeakDetector, TruthSample, sim::Table&, sim::HeartMotion>);
 static_assert(refuses<decltype(&servo::ControlLaw::velocity), servo::ControlLaw, TruthSample, sim::Table&, sim::Scene>);
 static_assert(refuses<decltype(&tracking::TargetTracker::track), tracking::TargetTracker, TruthSample, sim::Table&>);
 static_assert(

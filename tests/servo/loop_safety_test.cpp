@@ -53,6 +53,20 @@ TEST(LoopSafety, AShortLossIsOnlyCoasted) {
   EXPECT_EQ(bench.records[40].mode, LoopMode::FOLLOW);
 }
 
+TEST(LoopSafety, ACoastEndsWhereThePredictionLeavesWhatWasSeen) {
+  FakeBench bench(80);
+  bench.tracker->lost_from = 30;
+  bench.options.guard.coast_s = 1;
+  bench.options.guard.coast_beyond_m = 0.004;
+  bench.run();
+  // seen up to 0.29 s; 4 mm further at 0.49 s, which a command that acts 0.03 s later reaches at 0.46 s
+  EXPECT_EQ(bench.records[45].mode, LoopMode::COAST);
+  EXPECT_EQ(bench.records[47].mode, LoopMode::HOLD);
+  double furthest = 0;
+  for (const auto& r : bench.records) furthest = std::max(furthest, r.tip.x() - bench.records[29].tip.x());
+  EXPECT_LT(furthest, 0.0045);
+}
+
 TEST(LoopSafety, AWithdrawnToolWaitsUntilTheTargetIsSeenSeveralTimesInARow) {
   FakeBench bench(200);
   bench.tracker->lost_from = 30;

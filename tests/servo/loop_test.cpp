@@ -67,6 +67,30 @@ TEST(Loop, HoldsUntilThePredictorKnowsEnough) {
   EXPECT_EQ(bench.records[2].mode, LoopMode::FOLLOW);
 }
 
+// The ECG is read up to the frame's time and no further; a beat reaches predictor and record when it has become known.
+TEST(Loop, BeatsOfTheEcgReachThePredictorAfterTheirDelay) {
+  FakeBench bench(330);
+  std::vector<double> beats, asked;
+  bench.stages.predictor = std::make_unique<test::FakePredictor>(&beats);
+  bench.stages.ecg = std::make_unique<EcgMonitor>(std::make_unique<test::FakeEcg>(&asked));
+  bench.tracker->lost_from = 50;  // beats are heard while the target is lost
+  bench.tracker->lost_to = 300;
+  bench.run();
+  ASSERT_EQ(asked.size(), bench.records.size());
+  for (std::size_t i = 0; i < asked.size(); ++i) EXPECT_EQ(asked[i], bench.records[i].frame.time_s);
+  ASSERT_EQ(beats.size(), 8U);  // -4 to 3 s, some from before the first frame
+  for (std::size_t k = 0; k < beats.size(); ++k) EXPECT_NEAR(beats[k], static_cast<double>(k) - 4, 1e-3);
+  std::size_t heard = 0;
+  for (const auto& record : bench.records) {
+    if (std::isnan(record.r_peak_s) || record.r_peak_s < 0.5) continue;
+    ++heard;
+    const double delay = record.frame.time_s - record.r_peak_s;
+    EXPECT_GT(delay, 0.1);
+    EXPECT_LT(delay, 0.13 + kFakePeriod);
+  }
+  EXPECT_EQ(heard, 3U);
+}
+
 TEST(Loop, SaysWhyATrackerRefuses) {
   FakeBench bench(5);
   bench.tracker->refusal = "too small";

@@ -57,7 +57,9 @@ std::string plot_data(const Report& report) {
   for (const auto& plot : report.plots) {
     nlohmann::json series = nlohmann::json::array();
     const TimeTable* table = plot.table != nullptr ? plot.table : report.table;
-    std::size_t index = used.add(table, "time_s");
+    if (table == nullptr) throw std::invalid_argument("report: a plot has no table");
+    const std::string& x = table->columns()[0];
+    std::size_t index = used.add(table, x);
     for (const auto& s : plot.series) {
       index = used.add(table, s.column);
       series.push_back({{"label", s.label}, {"column", s.column}, {"truth", s.is_truth}});
@@ -66,6 +68,7 @@ std::string plot_data(const Report& report) {
                      {"unit", plot.y_label},
                      {"scale", plot.scale},
                      {"log_from", plot.log_from},
+                     {"x", x},
                      {"table", index},
                      {"series", series}});
   }
@@ -83,7 +86,7 @@ std::string plot_data(const Report& report) {
     bool first = true;
     for (const auto& name : used.columns[used.tables[i]]) {
       fmt::format_to(out, "{}\n{}:", first ? "{" : ",", quoted(name));
-      append_column(text, used.tables[i]->column(name), name == "time_s");
+      append_column(text, used.tables[i]->column(name), name == used.tables[i]->columns()[0]);
       first = false;
     }
     text.push_back('}');

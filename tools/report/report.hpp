@@ -32,7 +32,7 @@ struct ReportSeries {
   bool is_truth = false;  ///< what the others should be: drawn broad and pale below them
 };
 
-/// Columns over time. All plots zoom and point together.
+/// Columns over the table's first: time, or frequency. All plots over time zoom and point together.
 struct ReportPlot {
   std::string title;
   std::string y_label;  ///< with the unit people read: "mm"

@@ -8,14 +8,16 @@
 
   const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const short = v => String(+v.toPrecision(4));
-  const seconds = v => v.toFixed(3) + ' s';
+  const over_time = plot => plot.x === 'time_s';
+  const x_value = plot => over_time(plot) ? v => v.toFixed(3) + ' s' : v => v.toFixed(3) + ' Hz';
+  const x_label = plot => over_time(plot) ? v => +v.toFixed(6) + ' s' : v => +v.toFixed(6) + ' Hz';
 
   function rows(plot) {
     const columns = data.tables[plot.table];
     const series = plot.series.map(s => columns[s.column]);
     const lowest = plot.log_from > 0 ? plot.log_from : -Infinity;
     const value = v => v === null ? null : Math.max(v * plot.scale, lowest);
-    return columns.time_s.map((t, i) => [t].concat(series.map(s => value(s[i]))));
+    return columns[plot.x].map((t, i) => [t].concat(series.map(s => value(s[i]))));
   }
 
   // Seven colours, then the same ones dashed; truth broad and pale. Series are counted without it.
@@ -128,16 +130,16 @@
     if (table.length === 0) { place.textContent = 'No frames.'; place.style.height = 'auto'; return; }
     const first = index === 0;
     const g = new Dygraph(place, table, Object.assign({
-      labels: ['time'].concat(plot.series.map(s => s.label)), labelsDiv: document.getElementById('legend' + index),
+      labels: [over_time(plot) ? 'time' : 'frequency'].concat(plot.series.map(s => s.label)), labelsDiv: document.getElementById('legend' + index),
       legend: 'always', legendFormatter: d => legend(plot, d), logscale: plot.log_from > 0, highlightCircleSize: 3, axisLabelFontSize: 12,
       xRangePad: 0, interactionModel: interaction(), showRangeSelector: first, rangeSelectorHeight: 28,
       axes: {
-        x: {valueFormatter: seconds, axisLabelFormatter: v => +v.toFixed(6) + ' s', pixelsPerLabel: 70},
+        x: {valueFormatter: x_value(plot), axisLabelFormatter: x_label(plot), pixelsPerLabel: 70},
         y: Object.assign({valueFormatter: value_format(plot, table), axisLabelWidth: 44, pixelsPerLabel: 32},
             plot.log_from > 0 ? {axisLabelFormatter: short} : {})
       },
       // the troubles of several trackers would lie over each other: the gaps in their lines tell
-      underlayCallback: (context, area, me) => troubles.length === 1 && paint(troubles[0], context, me, () => area.y,
+      underlayCallback: (context, area, me) => troubles.length === 1 && over_time(plot) && paint(troubles[0], context, me, () => area.y,
           () => area.h, s => css(s === 2 ? '--shade-lost' : '--shade-uncertain')),
       drawCallback: me => {
         document.body.classList.toggle('zoomed', me.isZoomed('x'));
@@ -147,9 +149,13 @@
     place.addEventListener('keydown', e => keys(e, g));
     graphs.push({g, plot});
   });
-  if (graphs.length > 1) Dygraph.synchronize(graphs.map(p => p.g), {selection: true, zoom: true, range: false});
+  const timed = graphs.filter(p => over_time(p.plot));
+  if (timed.length > 1) Dygraph.synchronize(timed.map(p => p.g), {selection: true, zoom: true, range: false});
 
-  function whole() { if (graphs.length) graphs[0].g.resetZoom(); }
+  function whole() {
+    if (timed.length) timed[0].g.resetZoom();
+    graphs.filter(p => !over_time(p.plot)).forEach(p => p.g.resetZoom());
+  }
   document.querySelectorAll('button.whole').forEach(b => b.addEventListener('click', whole));
 
   // Arrows pan, + and - zoom, 0 shows the whole run.

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <map>
 
-#include "sim/table/csv_rows.hpp"
 #include "tracking/frames/picture_file.hpp"
+#include "tracking/settings/csv_rows.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/texture/feature_bank.hpp"
 
@@ -21,7 +21,7 @@ const std::vector<std::string>& header() {
   return names;
 }
 
-int whole_number(const sim::CsvRows& rows, std::size_t column) {
+int whole_number(const CsvRows& rows, std::size_t column) {
   const double value = rows.number(column);
   if (value != std::floor(value) || std::abs(value) > 1e6)
     rows.fail(fmt::format("'{}' is not a whole number of px", rows.cells()[column]));
@@ -41,7 +41,7 @@ cv::Mat region_of(const cv::Mat& grey, const cv::Rect& r, const std::string& nam
 
 std::vector<LabelledRegion> read_labelled_regions(const std::filesystem::path& csv) {
   const std::string expected = fmt::format("the header {}", fmt::join(header(), ","));
-  sim::CsvRows rows(csv, expected);
+  CsvRows rows(csv, expected);
   if (rows.names() != header()) rows.fail("expected " + expected);
   std::vector<LabelledRegion> regions;
   std::map<std::string, cv::Mat> pictures;

@@ -14,6 +14,7 @@ enum class FrameStatus {
 struct Frame {
   cv::Mat grey;                ///< CV_8UC1, empty unless status is OK
   cv::Mat colour;              ///< CV_8UC3 BGR where the source has colour, else empty; only for people to look at
+  cv::Mat right;               ///< CV_8UC1: the right view of a stereo endoscope at the same instant; empty for one view
   double time_s = 0;           ///< middle of the exposure
   std::uint64_t sequence = 0;  ///< counts every frame of the source, broken ones too
   FrameStatus status = FrameStatus::OK;

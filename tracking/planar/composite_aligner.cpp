@@ -14,7 +14,6 @@ constexpr double kForeseen_px = 4;       // how far to search when the last fram
 constexpr double kConvincing = 0.9;      // an alignment as good as this ends the trial of candidates
 constexpr double kHopeless = 0.35;       // d of a candidate not worth aligning from
 constexpr double kClearlyBetter = 0.02;  // correlation that a place further away has to be ahead
-constexpr double kVisibleShare = 0.5;    // as the tracker judges
 constexpr double kSomeHidden = 0.02;
 constexpr double kFewHidden = 0.6;   // of the template's points; with more the place itself is doubtful
 constexpr double kOtherLight = 0.1;  // change of gain that the minimisation should not have to find
@@ -34,7 +33,7 @@ class CompositeAligner final : public PatchAligner {
     camera_ = camera;
     side_px_ = std::max(side_x, side_y);
     hidden_.clear();
-    searched_ = false;
+    searched_ = lost_ = false;
     esm_->learn(picture, camera, G, side_x, side_y);
     build(G, 0);
     search_.learn(picture_, camera, G, side_x, side_y);
@@ -65,10 +64,14 @@ class CompositeAligner final : public PatchAligner {
     return best.alignment;
   }
 
-  void believe(const Alignment& a) override { look_for_hidden(a); }
+  void believe(const Alignment& a) override {
+    look_for_hidden(a);
+    lost_ = false;
+  }
   void forget() override {
     hidden_.clear();
     searched_ = false;
+    lost_ = true;
   }
 
  private:
@@ -79,7 +82,7 @@ class CompositeAligner final : public PatchAligner {
 
   Trial trial(const Alignment& from, int coarsest, MotionModel model) {
     const Alignment a = esm_->align(picture_.pyramid(), from, coarsest, model);
-    return {a, a.converged ? a.correlation * std::min(1.0, a.visible / kVisibleShare) : 0};
+    return {a, a.converged ? a.fit() : 0};
   }
 
   static Alignment with_light(Alignment a, const Light& light) {
@@ -91,7 +94,9 @@ class CompositeAligner final : public PatchAligner {
   bool search_from(const Alignment& start, int coarsest) {
     if (!start.G_plane_patch.allFinite()) return false;
     if (searched_ && coarsest == searched_level_ && start.G_plane_patch == searched_from_) return !candidates_->empty();
-    const double radius = coarsest <= 0 ? kForeseen_px : std::min(options_.search_px, coarsest == 1 ? 10.0 : 1e9);
+    // once lost, the starts are what a search of the whole picture has found
+    const double radius =
+        coarsest <= 0 || lost_ ? kForeseen_px : std::min(options_.search_px, coarsest == 1 ? 10.0 : 1e9);
     build(start.G_plane_patch, radius);
     candidates_ = &search_.around(picture_, start.G_plane_patch, radius, hidden_);
     searched_ = true;
@@ -151,7 +156,7 @@ class CompositeAligner final : public PatchAligner {
   HiddenPoints hidden_;
   std::vector<float> seen_;
   const std::vector<Candidate>* candidates_ = nullptr;
-  bool searched_ = false;
+  bool searched_ = false, lost_ = false;
   int searched_level_ = 0;
   Eigen::Matrix3d searched_from_ = Eigen::Matrix3d::Identity();
 };

@@ -18,6 +18,7 @@ constexpr double kKnownNoise = 0.8;         // share of the gradient's noise tha
 constexpr double kNear_px = 0.1;            // where bilinear sampling has done its part; twice that a level up
 constexpr int kLastIterations = 5;          // with cubic sampling
 constexpr double kSmallestShare = 0.3;      // of the template's points must be in the picture
+constexpr double kHopeless = 0.6;           // fit at a coarse level that no finer one mends
 
 using Matrix8d = Eigen::Matrix<double, 8, 8>;
 
@@ -74,10 +75,14 @@ class EsmAligner final : public PatchAligner {
     coarsest = std::min({coarsest, picture.levels() - 1, static_cast<int>(patches_.size()) - 1});
     // Bilinear sampling to come near, cubic for the last steps. A coarse level has too few points for the perspective
     // terms: affine is enough to come near.
-    for (int level = coarsest; level >= 0; --level)
-      if (!descend(picture.level(level), level, Interpolation::LINEAR, level > 0 ? coarse_model(level) : model,
-                   options_.max_iterations, kNear_px * (1 << level), a))
+    for (int level = coarsest; level >= 0; --level) {
+      const MotionModel at_level = level > 0 ? coarse_model(level) : model;
+      if (!descend(picture.level(level), level, Interpolation::LINEAR, at_level, options_.max_iterations,
+                   kNear_px * (1 << level), a))
         return a;
+      a.converged = false;
+      if (level > 0 && at_level != MotionModel::TRANSLATION && a.fit() < kHopeless) return a;
+    }
     a.converged = descend(picture.level(0), 0, Interpolation::CUBIC, model, kLastIterations, options_.step_px, a);
     return a;
   }
@@ -117,7 +122,7 @@ class EsmAligner final : public PatchAligner {
       a.bias += step[9];
       if (!a.G_plane_patch.allFinite() || !(a.gain > 0.05 && a.gain < 20)) return false;
       const bool last = corner_step(M) * half_side_px_ < step_px || i + 1 == iterations;
-      if (last && interpolation == Interpolation::CUBIC) judge(patch, pass, usable, bent.gain_offset, a);
+      if (last) judge(patch, pass, usable, bent.gain_offset, a);
       if (last) break;
     }
     return true;

@@ -2,6 +2,7 @@
 // Aligns a template with a picture. A tracker (planar_tracker.hpp) wraps an aligner with prediction, states and
 // re-acquisition, so that every aligner gets the same loss detection.
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 
@@ -29,6 +30,9 @@ struct Alignment {
   /// How the region is bent before the homography is applied, and lit, of aligners that bend it (spline_bend.hpp); none
   /// where the region is plane. It leaves the patch's centre in place, and G_plane_patch is the homography there.
   BendField bend{3, 0};
+
+  /// The correlation, lowered where less than half of the template is believed.
+  double fit() const { return correlation * std::min(1.0, visible / 0.5); }
 };
 
 /// How much a region may change its shape in the picture.

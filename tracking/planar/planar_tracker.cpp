@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kSmallestSide = 12;        // px
 constexpr double kSmallestGradient = 1.3;   // grey/px, RMS in the direction with the least texture
-constexpr double kVisibleShare = 0.5;       // a template that fits on fewer points loses quality
 constexpr double kGlareMargin = 25;         // grey, above the brightest of the template
 constexpr double kSmallSurprise = 1.2;      // px between foreseen and found place that one level copes with
 constexpr double kSuddenFall = 0.06;        // of the quality, against the last frames
@@ -168,8 +167,8 @@ double PlanarTracker::quality_of(const Alignment& a, const Quad& expected) const
     return 0;
   const Eigen::Vector2d c = centre(corners);
   if (c.x() < 0 || c.y() < 0 || c.x() > width_ - 1 || c.y() > height_ - 1) return 0;
-  return a.correlation * std::min(1.0, a.visible / kVisibleShare) *
-         std::min(1.0, kLikelyPerspective / view.perspective) * std::min(1.0, kLikelyAnisotropy / view.anisotropy) *
+  return a.fit() * std::min(1.0, kLikelyPerspective / view.perspective) *
+         std::min(1.0, kLikelyAnisotropy / view.anisotropy) *
          std::min(1.0, kLikelyShear / view_change(expected, corners).anisotropy);
 }
 
@@ -337,6 +336,11 @@ Track PlanarTracker::track(const Frame& frame) {
   const Eigen::Matrix3d K = intrinsics(camera_);
   track.corners = corners_of(last_.G_plane_patch);
   track.target = pixel_of(last_.G_plane_patch, aligner_->bent(last_, Eigen::Vector2d::Zero()));
+  for (int i = 0; i < kGridSide * kGridSide; ++i) {
+    const auto along = [](int k) { return (2 * k + 1.0) / kGridSide - 1; };
+    const Eigen::Vector2d point(along(i % kGridSide) * patch_corners_[2].x(), along(i / kGridSide) * patch_corners_[2].y());
+    track.points[static_cast<std::size_t>(i)] = pixel_of(last_.G_plane_patch, aligner_->bent(last_, point));
+  }
   track.gain = last_.gain;
   track.bias = last_.bias;
   track.H_current_reference = to_sl3(K * last_.G_plane_patch * reference_.G_plane_patch.inverse() * K.inverse());

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 
 #include "tracking/planar/quad.hpp"
@@ -14,6 +15,10 @@ enum class TrackState {
 
 const char* name_of(TrackState state);
 
+/// Of the region, rows of a square grid.
+inline constexpr int kGridSide = 7;
+using PointGrid = std::array<Eigen::Vector2d, kGridSide * kGridSide>;
+
 /// What a tracker says about one frame.
 struct Track {
   double time_s = 0;           ///< of the frame
@@ -24,6 +29,9 @@ struct Track {
   /// as they would lie were the whole region shaped like its centre.
   Quad corners{};
   Eigen::Vector2d target = Eigen::Vector2d::Zero();  ///< px: where the centre of the region learnt now lies
+  /// px: where points of the region learnt now lie, bent or not: a grid from its first corner to its third, the outer
+  /// points half a step inside.
+  PointGrid points{};
   Eigen::Matrix3d H_current_reference = Eigen::Matrix3d::Identity();  ///< on the undistorted pixel plane, det 1
   double gain = 1;                                                    ///< template grey = gain * picture grey + bias
   double bias = 0;                                                    ///< grey levels

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace heartservo::sim {
+namespace heartservo {
 
 class CsvRows {
  public:
@@ -27,6 +27,9 @@ class CsvRows {
   /// NaN for an empty cell. Throws InputError for what is no number.
   double number(std::size_t column) const;
 
+  /// Of the row (or header), counted from 1.
+  int line() const { return line_; }
+
   /// No more rows than this are left to come.
   std::size_t rows_ahead() const;
 
@@ -43,4 +46,4 @@ class CsvRows {
   std::vector<std::string_view> cells_;
 };
 
-}  // namespace heartservo::sim
+}  // namespace heartservo

@@ -1,4 +1,4 @@
-#include "sim/table/csv_rows.hpp"
+#include "tracking/settings/csv_rows.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 
 #include "tracking/settings/errors.hpp"
 
-namespace heartservo::sim {
+namespace heartservo {
 
 namespace {
 
@@ -81,4 +81,4 @@ void CsvRows::fail(const std::string& what) const {
   throw InputError(fmt::format("{}:{}: {}", file_, std::max(line_, 1), what));
 }
 
-}  // namespace heartservo::sim
+}  // namespace heartservo
