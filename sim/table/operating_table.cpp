@@ -10,6 +10,7 @@
 #include "sim/table/heart_beats.hpp"
 #include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
+#include "sim/tissue/feeling_robot.hpp"
 
 namespace heartservo::sim {
 
@@ -37,8 +38,8 @@ class OperatingTable final : public Table, private tracking::FrameSource {
             scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
         robot_(make_robot({scene.robot, goal_at(0) + scene.robot.start_error_m, tool_axis(),
                            stream_seed(scene.seed, Stream::ROBOT)})),
-        feeling_(*robot_, [this](double t) { return force_at(t); }, scene.loop.force.on() ? scene.tissue.force_noise_n : 0,
-                 stream_seed(scene.seed, Stream::FORCE)) {
+        feeling_(*robot_, [this](double t) { return force_at(t); },
+                 scene.loop.force.on() ? scene.tissue.force_noise_n : 0, stream_seed(scene.seed, Stream::FORCE)) {
     if (scene.loop.eye_in_hand) start_goal_ = goal_at(0);
     if (!(scene.stereo.baseline_m > 0)) return;
     right_ = std::make_unique<Endoscope>(camera_, endoscope_.surface(), scene.picture,
@@ -171,7 +172,9 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     const double error = std::normal_distribution<double>(0, scale.sigma_m)(random);
     return tracking::known_scale({pose_at(target, 0).translation().z() + error, scale.sigma_m});
   }
-  Eigen::Vector3d goal_at(double t) const { return pose_at(scene_.target, t) * (scene_.loop.offset_m + path_.position(t)); }
+  Eigen::Vector3d goal_at(double t) const {
+    return pose_at(scene_.target, t) * (scene_.loop.offset_m + path_.position(t));
+  }
 
   Eigen::Vector3d baseline() const { return {scene_.stereo.baseline_m, 0, 0}; }  // of the right view
 

@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "sim/scene/scene.hpp"
-#include "sim/table/csv_rows.hpp"
 #include "sim/table/table.hpp"
 #include "tracking/frames/frame.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/landmark/square_refinement.hpp"
 #include "tracking/planar/registry.hpp"
+#include "tracking/settings/csv_rows.hpp"
 
 namespace heartservo::sim {
 
