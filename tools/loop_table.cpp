@@ -43,7 +43,7 @@ std::vector<std::string> column_names() {
     names.emplace_back(name);
   triple("command", "m_s");
   for (const char* name : {"command/acts_at_s", "loop/mode", "guard/limited", "guard/not_finite", "frame/stale",
-                           "target/implausible", "force/felt_n", "force/wanted_n", "force/truth_n", "ecg/r_peak_s",
+                           "target/implausible", "force/felt_n", "force/wanted_n", "force/truth_n", "ecg/peak_s",
                            "timing/track_ms", "timing/chain_ms"})
     names.emplace_back(name);
   return names;

@@ -200,7 +200,7 @@ int run_predict(const PredictOptions& o) {
   Report report = report_of(summary, run, options.horizons_s[shown], table);
   report.config_yaml = config_of(o, run, summary);
   finish_run(folder, report, o.run,
-             fmt::format("{}: {} rows of {}, scored on the {} after {:g} s\n\n{}", o.run.source, record.time_s.size(),
+             fmt::format("{}: {} rows of {}, scored on the {} after {:.1f} s\n\n{}", o.run.source, record.time_s.size(),
                          record.group, reference, options.settle_s, terminal_text(table_of(summary), false)));
   return interrupted ? INTERRUPTED : DONE;
 }

@@ -37,7 +37,7 @@ std::vector<std::string> column_names(const TruthKind& truth, bool metric) {
   }
   if (metric)
     for (const char* name :
-         {"measured/x_m", "measured/y_m", "measured/z_m", "measured/sigma_z_m", "pose/qx", "pose/qy", "pose/qz", "pose/qw"})
+         {"measured/x_m", "measured/y_m", "measured/z_m", "measured/sigma/z_m", "pose/qx", "pose/qy", "pose/qz", "pose/qw"})
       names.emplace_back(name);
   if (metric && truth.metric)
     for (const char* name : {"truth/x_m", "truth/y_m", "truth/z_m"}) names.emplace_back(name);

@@ -50,7 +50,7 @@ class TrackLane {
 
   /// Its CSV: time_s, frame/sequence, track/state, track/quality, track/corner0..3, target (the centre of the region),
   /// displacement (of the target since the first frame), error_px (of the corners), timing/track_ms; with the truth
-  /// that there is: truth/corner0..3; point, truth/point, point/error_px; and when metric: measured (with sigma_z_m), pose,
+  /// that there is: truth/corner0..3; point, truth/point, point/error_px; and when metric: measured (with sigma/z_m), pose,
   /// and truth where known. A LOST frame has no place.
   const TimeTable& table() const { return table_; }
 

@@ -191,8 +191,10 @@ PaperTable paper_figure_7(const json& trackers, int speculars) {
 }
 
 std::string terminal_text(const ReportTable& table, bool with_note) {
-  std::vector<std::size_t> width(table.header.size());
-  std::vector<bool> numeric(table.header.size(), true);
+  std::size_t columns = table.header.size();
+  for (const auto& row : table.rows) columns = std::max(columns, row.size());
+  std::vector<std::size_t> width(columns);
+  std::vector<bool> numeric(columns, true);
   const auto measure = [&](const std::vector<std::string>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) width[i] = std::max(width[i], cells[i].size());
   };
@@ -208,7 +210,7 @@ std::string terminal_text(const ReportTable& table, bool with_note) {
       written += (i > 0 ? "  " : "") + padded(cells[i], width[i], i > 0 && numeric[i]);
     text += written.substr(0, written.find_last_not_of(' ') + 1) + "\n";
   };
-  line(table.header);
+  if (!table.header.empty()) line(table.header);
   for (const auto& row : table.rows) line(row);
   return with_note && !table.note.empty() ? text + "\n" + wrapped(table.note) : text;
 }

@@ -132,7 +132,11 @@ void RPeakDetector::learn() {
   std::vector<double> all;
   for (const auto& e : since_beat_) all.push_back(std::abs(e.size));
   std::sort(all.begin(), all.end());
-  const double largest = all.empty() ? 0 : all.back(), middle = all.empty() ? 0 : all[all.size() / 2];
+  const double largest = all.empty() ? 0 : all.back();
+  // No more extrema than beats can be: an ECG without noise, in which every extremum is a beat.
+  const bool only_beats = all.size() >= 2 && static_cast<double>(all.size()) <= kLearning_s / kRefractory_s &&
+                          all.front() > 0.5 * largest;
+  const double middle = all.empty() || only_beats ? 0 : all[all.size() / 2];
   if (!(largest > 3 * middle) || largest <= 0) {  // silence, or nothing but noise
     learning_until_ = static_cast<double>(count_) + 0.5 * kLearning_s * rate_hz_;
     const double from = static_cast<double>(count_) - kLearning_s * rate_hz_;

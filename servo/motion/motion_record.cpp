@@ -40,8 +40,8 @@ Columns columns_of(const CsvRows& rows, const std::string& group) {
     if (!found) {
       const std::string name = group + kAxes[i];
       std::vector<std::string> others = rows.names();  // without those that are right
-      std::erase_if(others, [](const std::string& other) {
-        return std::any_of(kAxes.begin(), kAxes.end(), [&](const char* axis) { return other.ends_with(axis); });
+      std::erase_if(others, [&](const std::string& other) {
+        return std::any_of(kAxes.begin(), kAxes.end(), [&](const char* axis) { return other == group + axis; });
       });
       rows.fail(fmt::format("there is no column {}{}; expected {}", name, did_you_mean(name, others), kExpected));
     }

@@ -91,10 +91,10 @@ struct FakeLaw final : servo::ControlLaw {
   }
 };
 
-/// Beats once a second from -5 s on; remembers how far it was asked to look.
+/// Beats once a second from -4 s on; remembers how far it was asked to look.
 struct FakeEcg final : servo::EcgSource {
   std::vector<double>* asked;
-  long at = -5 * 250;
+  long at = -9 * 125;
   explicit FakeEcg(std::vector<double>* a) : asked(a) {}
   double rate_hz() const override { return 250; }
   bool next(double until_s, servo::EcgSample& sample) override {

@@ -65,7 +65,7 @@ TEST_F(Depth, AStereoEndoscopeMeasuresIt) {
   for (double t, x, y, z, q[4]; tum >> t >> x >> y >> z >> q[0] >> q[1] >> q[2] >> q[3]; ++rows)
     EXPECT_NEAR(z, 0.05, 5e-4);
   EXPECT_EQ(rows, 4);
-  const Outcome servo = run({"servo", "left", "--stereo", "right", "--camera", "stereo.yaml", "--roi", "70,40,40,40",
+  const Outcome servo = run({"servo", "left", "--stereo", "right", "--camera", "stereo.yaml", "--roi", "90,75,40,40",
                              "--json", "--quiet", "--out", "loop"});
   EXPECT_EQ(servo.code, 0) << servo.err;
   EXPECT_EQ(json_of(servo)["estimator"], "stereo_depth");
@@ -74,6 +74,7 @@ TEST_F(Depth, AStereoEndoscopeMeasuresIt) {
 TEST_F(Depth, WhatAStereoRunLacksIsNamed) {
   stereo_frames(4, 3);
   expect_refused(3, stereo_run(), {"right", "3 frames", "pairs"});
+  stereo_frames(4, 4);
   expect_refused(2, {"track", "left", "--stereo", "right", "--roi", "70,40,40,40"}, {"--camera", "stereo calibration"});
   expect_refused(3, {"track", "left", "--stereo", "right", "--camera", "mono.yaml", "--roi", "70,40,40,40"},
                  {"mono.yaml", "no stereo calibration"});

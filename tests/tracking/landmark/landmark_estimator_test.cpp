@@ -37,10 +37,17 @@ EstimatorOptions options() {
   return result;
 }
 
+// Those that need no more than corners; the ones of tracking/depth have tests of their own.
+std::vector<std::string> engines_of_corners() {
+  std::vector<std::string> names = estimators().names();
+  std::erase_if(names, [](const std::string& name) { return name == "region_depth" || name == "stereo_depth"; });
+  return names;
+}
+
 TEST(LandmarkEstimator, EveryEngineOfTheRegistryGivesThePositionAndCarriesTheFrameAlong) {
   auto random = test::seeded();
   auto truth = tilted_pose(random, 0.2, 0.055);
-  for (const auto& name : estimators().names()) {
+  for (const auto& name : engines_of_corners()) {
     const auto estimator = estimators().make(name, options());
     const TargetState state =
         estimator->estimate(track_of(project_square(table2_camera(), truth, SIDE), 1.5, TrackState::UNCERTAIN));
@@ -59,7 +66,7 @@ TEST(LandmarkEstimator, LostGoesInOrComesOut) {
   const Quad good = rectangle(250, 250, 50, 50);
   Quad broken = good;
   broken[3].y() = nan;
-  for (const auto& name : estimators().names()) {
+  for (const auto& name : engines_of_corners()) {
     const auto estimator = estimators().make(name, options());
     EXPECT_EQ(estimator->estimate(track_of(good, 0, TrackState::LOST)).state, TrackState::LOST) << name;
     EXPECT_EQ(estimator->estimate(track_of(broken)).state, TrackState::LOST) << name;
