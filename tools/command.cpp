@@ -149,7 +149,8 @@ std::string stem_of(const std::string& source) {
 std::string config_text(const sim::Scene& scene, const std::string& command) {
   sim::Scene resolved = scene;
   for (std::string* path : {&resolved.camera.calibration, &resolved.recording.source, &resolved.recording.right,
-                            &resolved.recording.reference, &resolved.motion.beats, &resolved.ecg.record})
+                            &resolved.recording.reference, &resolved.motion.beats, &resolved.ecg.record,
+                            &resolved.loop.path.file})
     if (!path->empty()) *path = absolute(sim::resolve(scene, *path));
   return fmt::format("# heartservo {} {}: the resolved configuration; it can be run again as a scene\n{}",
                      HEARTSERVO_VERSION, command, to_yaml(resolved));

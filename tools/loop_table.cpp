@@ -42,7 +42,8 @@ std::vector<std::string> column_names() {
   for (const char* name : {"goal/truth/u_px", "goal/truth/v_px", "tip/truth/u_px", "tip/truth/v_px"})
     names.emplace_back(name);
   triple("command", "m_s");
-  for (const char* name : {"command/acts_at_s", "loop/mode", "guard/limited", "guard/not_finite", "ecg/peak_s",
+  for (const char* name : {"command/acts_at_s", "loop/mode", "guard/limited", "guard/not_finite", "frame/stale",
+                           "target/implausible", "force/felt_n", "force/wanted_n", "force/truth_n", "ecg/peak_s",
                            "timing/track_ms", "timing/chain_ms"})
     names.emplace_back(name);
   return names;
@@ -78,7 +79,9 @@ void append(TimeTable& table, const servo::LoopRecord& r, const servo::TruthSamp
   put(row, truth.tip_px);
   put(row, r.command.velocity);
   row.insert(row.end(), {r.command.acts_at_s, static_cast<double>(r.mode), r.guard.limited() ? 1.0 : 0.0,
-                         r.guard.not_finite ? 1.0 : 0.0, r.r_peak_s, r.track_ms, r.chain_ms});
+                         r.guard.not_finite ? 1.0 : 0.0, r.stale ? 1.0 : 0.0, r.implausible ? 1.0 : 0.0,
+                         r.encoders.force_n, r.force_wanted_n, truth.force_n.value_or(NAN), r.r_peak_s, r.track_ms,
+                         r.chain_ms});
   table.append(row);
 }
 

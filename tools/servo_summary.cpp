@@ -71,6 +71,13 @@ json servo_summary(const servo::ScoreSummary& s, const sim::Scene& scene, const 
     j["tracking"]["error_px"] = {
         {"mean", s.corner_error_px.mean}, {"std", s.corner_error_px.std}, {"max", s.corner_error_px.max}};
   if (s.metric && s.lost_frames < s.frames) j["tracking"]["position_error_mm"] = std_max(s);
+  if (scene.loop.force.on())
+    j["force"] = {{"wanted_n", scene.loop.force.wanted_n},
+                  {"error_rms_n", s.force_error.count > 0 ? json(s.force_error.rms) : json()},
+                  {"error_max_n", s.force_error.count > 0 ? json(s.force_error.max) : json()},
+                  {"peak_n", s.force_peak_n},
+                  {"touches", s.touches},
+                  {"scored_frames", s.force_error.count}};
   j["commands"] = {{"max_speed_mm_s", 1e3 * s.max_speed},
                    {"max_step_mm", 1e3 * s.max_step_m},
                    {"limited", s.limited_commands},
@@ -115,6 +122,11 @@ std::string residual_table(const json& j) {
   row("motion", {number(j["motion_px"]["rms"], 2)});
   row("residual", {number(px["rms"], 2), number(px["p95"], 2), number(px["max"], 2)});
   t += fmt::format("{:<22}{:>10}\n", "scored against", reference_text(px));
+  if (j.contains("force"))
+    t += fmt::format("\nforce {} N wanted: error {} N RMS, {} N at most; peak {} N; {} touches\n",
+                     number(j["force"]["wanted_n"], 2), number(j["force"]["error_rms_n"], 3),
+                     number(j["force"]["error_max_n"], 3), number(j["force"]["peak_n"], 3),
+                     j["force"]["touches"].get<int>());
   t += fmt::format("\nmotion cancelled {} %, lost frames {}, uncertain {}, found again {}\n",
                    number(j["reduction_percent"], 1), j["tracking"]["lost_frames"].get<int>(),
                    j["tracking"]["uncertain_frames"].get<int>(), j["tracking"]["relocks"].get<int>());

@@ -1,20 +1,25 @@
 #pragma once
-// One pass of the house per frame: Frame -> Track -> TargetState -> Prediction -> velocity -> guard -> ToolRobot. The
-// only place that knows the order, the clock and the latency. Truth is no part of any type in here; a score (score.hpp)
-// watches from outside.
+// One pass of the house per frame: Frame -> Track -> TargetState -> Prediction -> law -> feed-forward -> filter ->
+// limits -> finite check -> ToolRobot. The only place that knows the order, the clock and the latency. Truth is no part
+// of any type in here; a score (score.hpp) watches from outside.
+#include <Eigen/Geometry>
 #include <functional>
 #include <memory>
 #include <string>
 
 #include "servo/control/control_law.hpp"
+#include "servo/control/low_pass.hpp"
 #include "servo/ecg/ecg_monitor.hpp"
-#include "servo/loop/command_history.hpp"
 #include "servo/loop/loop_options.hpp"
 #include "servo/loop/loop_record.hpp"
 #include "servo/prediction/motion_predictor.hpp"
+#include "servo/robot/robot_model.hpp"
 #include "servo/robot/tip_estimator.hpp"
 #include "servo/robot/tool_robot.hpp"
 #include "servo/safety/command_guard.hpp"
+#include "servo/safety/retreat.hpp"
+#include "servo/safety/supervisor.hpp"
+#include "servo/safety/watchdog.hpp"
 #include "tracking/frames/frame_source.hpp"
 #include "tracking/landmark/target_estimator.hpp"
 #include "tracking/planar/target_tracker.hpp"
@@ -30,11 +35,13 @@ struct LoopStages {
   std::unique_ptr<ControlLaw> control_law;
   /// Corners picked by hand in the first frame -> subpixel corners; empty: as picked.
   std::function<tracking::Quad(const tracking::Frame&, const tracking::Quad&)> refine_target, refine_marker;
+  /// Now, on the clock of the frames' time stamps (s), for the watchdog of their age; empty where no such clock runs.
+  std::function<double()> frame_clock;
 };
 
 class Loop {
  public:
-  /// `stopwatch` gives seconds from any origin, for the timing columns only.
+  /// `stopwatch` gives seconds from any origin, for the timing columns and the watchdog of computing time.
   Loop(tracking::FrameSource& frames, ToolRobot& robot, LoopStages stages, const LoopOptions& options,
        const Eigen::Vector3d& marker_to_tip_camera, std::function<double()> stopwatch);
 
@@ -50,18 +57,35 @@ class Loop {
  private:
   void perceive(LoopRecord& record);
   void decide(LoopRecord& record);
+  Eigen::Vector3d tip_of(const LoopRecord& record);
+  Eigen::Vector3d wanted(LoopRecord& record, double acts_at);
+  bool may_coast(double time_s) const;
+  void turn_to(const Eigen::Matrix3d& R_camera_target);
+  Prediction goal_at(double time_s) const;
+  Eigen::Vector3d shift_at(double time_s) const;
 
   tracking::FrameSource& frames_;
   ToolRobot& robot_;
   LoopStages stages_;
   LoopOptions options_;
   ToolRobotData robot_data_;
+  RobotLag lag_;
+  RobotModel model_;
   TipEstimator tip_estimator_;
+  SurgeonPath path_;
+  ForceLoop force_;
+  LowPass filter_;
+  Supervisor supervisor_;
+  Retreat retreat_;
+  Watchdog watchdog_;
   CommandGuard guard_;
-  CommandHistory history_;
   std::function<double()> stopwatch_;
   tracking::Frame frame_;
-  double last_seen_s_ = 0;
+  Eigen::Matrix3d R_camera_target_ = Eigen::Matrix3d::Identity();  // smoothed
+  Eigen::AlignedBox3d seen_goals_;  // of LoopRecord::carried, camera frame, m
+  Eigen::Vector3d encoders_start_ = Eigen::Vector3d::Zero();           // camera frame, m; eye-in-hand
+  Eigen::Vector3d view_ = Eigen::Vector3d::Constant(NAN);              // the place held in the picture; eye-in-hand
+  Eigen::Vector3d last_velocity_ = Eigen::Vector3d::Zero();  // camera frame
   bool first_ = true, ever_seen_ = false;
   std::string stop_reason_;
 };

@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "servo/control/registry.hpp"
+#include "servo/control/control_options.hpp"
+#include "servo/control/force_loop.hpp"
+#include "servo/control/surgeon_path.hpp"
 #include "servo/prediction/registry.hpp"
 #include "servo/robot/tip_estimator.hpp"
-#include "servo/safety/command_guard.hpp"
+#include "servo/safety/guard_options.hpp"
 #include "tracking/settings/fields.hpp"
 
 namespace heartservo::servo {
@@ -37,11 +39,17 @@ struct LatencyOptions {
 struct LoopOptions {
   LatencyOptions latency;
   Eigen::Vector3d offset_m{0, 0, 0};
-  double frame_rate_hz = 125;  // not a key: from the camera
+  // not keys: from the camera, and from the tool
+  double frame_rate_hz = 125;
+  Eigen::Vector3d tool_axis{0, 0, -1};  ///< from the tip along the shaft, camera frame
   PredictorOptions prediction;
   ControlOptions control;
   GuardOptions guard;
   TipOptions tip;
+  PathOptions path;
+  ForceOptions force;
+  bool eye_in_hand = false;
+  std::vector<PathPoint> recorded_path;  // not a key: from the file that `path` names
 
   void fields(FieldVisitor& v) {
     v.group("latency", "parts of the loop's latency", latency);
@@ -51,10 +59,19 @@ struct LoopOptions {
             offset_m);
     v.group("prediction", "options of the predictors", prediction);
     v.group("control", "options of the control laws", control);
-    v.group("guard", "limits on every command, and what ends a run", guard);
+    v.group("guard", "limits on every command, what ends a run, what happens without a target", guard);
+    v.group("path", "what the surgeon's hand adds: a path relative to the heart, from offset_m", path);
+    v.group("force", "pressing on the tissue", force);
+    v.field({"eye_in_hand", "",
+             "true: the robot carries the endoscope, and the place where the first picture shows the goal is held"},
+            eye_in_hand);
     v.group("tip", "where the tip is taken from", tip);
   }
-  std::vector<std::string> validate() const { return guard.validate(); }
+  std::vector<std::string> validate() const {
+    std::vector<std::string> problems = guard.validate();
+    for (const auto& problem : path.validate()) problems.push_back(problem);
+    return problems;
+  }
 };
 
 }  // namespace heartservo::servo

@@ -11,6 +11,8 @@ using tracking::TrackState;
 
 namespace {
 
+constexpr double kPressSettle_s = 0.5;  // the force is scored from then on
+
 template <class Vector>
 double rms_around_mean(const std::vector<Vector>& points) {
   if (points.empty()) return 0;
@@ -88,6 +90,13 @@ void Score::add(const LoopRecord& r, const TruthSample& truth) {
   if (truth.target && r.target.state != TrackState::LOST)
     position_errors_.push_back(r.target.T_camera_target.translation() - *truth.target);
 
+  if (truth.force_n) {
+    counts_.force_peak_n = std::max(counts_.force_peak_n, *truth.force_n);
+    counts_.touches += *truth.force_n > 0 && last_force_n_ <= 0;
+    last_force_n_ = *truth.force_n;
+    pressing_s_ = r.force_wanted_n > 0 ? pressing_s_ + period_s_ : 0;
+    if (pressing_s_ > kPressSettle_s) force_errors_.push_back(*truth.force_n - r.force_wanted_n);
+  }
   if (r.frame.time_s - *first_time_s_ < settle_s_) return;
   ++counts_.scored_frames;
   if (truth.goal && truth.tip) {
@@ -120,6 +129,7 @@ ScoreSummary Score::summary() const {
   s.motion_rms = rms_around_mean(goals_);
   s.reduction_percent = reduction_percent(s.residual.rms, s.motion_rms);
   s.residual_px = spread_of(residuals_px_);
+  s.force_error = spread_of(force_errors_);
   s.motion_px.rms = rms_around_mean(goals_px_);
   s.reduction_percent_px = reduction_percent(s.residual_px.rms, s.motion_px.rms);
   s.corner_error_px = spread_of(corner_errors_px_);

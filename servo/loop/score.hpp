@@ -17,6 +17,7 @@ struct TruthSample {
   std::optional<Eigen::Vector3d> target, goal, tip;
   Eigen::Vector2d goal_px = Eigen::Vector2d::Constant(NAN), tip_px = Eigen::Vector2d::Constant(NAN);
   std::optional<tracking::Quad> corners_px;  ///< of the tracked region
+  std::optional<double> force_n;             ///< contact force
 };
 
 struct Spread {
@@ -41,6 +42,9 @@ struct ScoreSummary {
   double reduction_percent_px = 0;
   std::size_t lost_frames = 0, uncertain_frames = 0, relocks = 0, unreadable_frames = 0, limited_commands = 0;
   Eigen::Vector3d position_error_std = Eigen::Vector3d::Zero(), position_error_max = Eigen::Vector3d::Zero();  ///< m
+  Spread force_error;        ///< N, while pressing (0.5 s after its begin and later)
+  double force_peak_n = 0;   ///< of the whole run
+  std::size_t touches = 0;   ///< times that contact began
   double max_speed = 0, max_step_m = 0;  ///< m/s; m per period, of the commands
   double track_ms_p50 = 0, track_ms_p99 = 0, track_ms_max = 0;
   double chain_ms_p50 = 0, chain_ms_p99 = 0, chain_ms_max = 0;
@@ -60,6 +64,8 @@ class Score {
   ScoreSummary counts_;
   std::vector<Eigen::Vector3d> goals_, residuals_, position_errors_;
   std::vector<Eigen::Vector2d> goals_px_;
+  std::vector<double> force_errors_;
+  double pressing_s_ = 0, last_force_n_ = 0;
   std::vector<double> residuals_px_, corner_errors_px_, track_ms_, chain_ms_;
 };
 

@@ -1,36 +1,12 @@
 #pragma once
-// The last gate before the robot: every velocity passes finite check -> speed limit -> acceleration limit -> step
-// limit, in this order, and nothing reaches the robot around it.
+// The last gate before the robot: every velocity passes speed limit -> acceleration limit -> step limit -> finite
+// check, in this order, and nothing reaches the robot around it.
 #include <Eigen/Core>
 #include <string>
-#include <vector>
 
-#include "tracking/settings/fields.hpp"
+#include "servo/safety/guard_options.hpp"
 
 namespace heartservo::servo {
-
-struct GuardOptions {
-  double max_speed = 0.3;            ///< m/s
-  double max_acceleration = 15;      ///< m/s^2
-  double max_step_m = 0.0025;        ///< m per period
-  double coast_s = 0.15;             ///< s
-  double workspace_radius_m = 0.05;  ///< m
-  int bad_commands_to_stop = 3;
-
-  void fields(FieldVisitor& v) {
-    v.field({"max_speed", "m/s", "fastest commanded speed of the tip", 1e-3, 10}, max_speed);
-    v.field({"max_acceleration", "m/s^2", "largest change of the commanded velocity per second", 1e-2, 1e4},
-            max_acceleration);
-    v.field({"max_step_m", "m", "longest way commanded within one period", 1e-6, 1}, max_step_m);
-    v.field({"coast_s", "s", "how long a lost target is followed on its prediction before the tool holds still", 0, 10},
-            coast_s);
-    v.field({"workspace_radius_m", "m", "a tip further than this from where the run began stops the loop", 1e-3, 10},
-            workspace_radius_m);
-    v.field({"bad_commands_to_stop", "", "this many commands in a row that are not finite stop the loop", 1, 1000},
-            bad_commands_to_stop);
-  }
-  std::vector<std::string> validate() const;
-};
 
 /// What the guard did to one command.
 struct GuardReport {
@@ -40,19 +16,30 @@ struct GuardReport {
   bool limited() const { return limited_speed || limited_acceleration || limited_step; }
 };
 
+/// What the guard is told beside the command.
+struct GuardView {
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< where the tip is now, m
+  double error_m = 0;                             ///< distance of tip and goal; 0 where none is followed
+  double force_n = 0;                             ///< N
+};
+
 class CommandGuard {
  public:
   explicit CommandGuard(const GuardOptions& options) : options_(options) {}
 
-  /// `wanted` in m/s; `tip` is where the tip is now. The first tip seen is the middle of the workspace.
-  GuardReport check(const Eigen::Vector3d& wanted, const Eigen::Vector3d& tip, double period_s);
+  /// `wanted` in m/s. The first tip seen is the middle of the workspace. A command that is not finite becomes the
+  /// hardest braking allowed.
+  GuardReport check(const Eigen::Vector3d& wanted, const GuardView& view, double period_s);
 
  private:
+  std::string reason_to_stop(const GuardView& view, double period_s);
+
   GuardOptions options_;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
   bool started_ = false;
   int bad_ = 0;
+  double far_for_s_ = 0;
 };
 
 }  // namespace heartservo::servo

@@ -75,16 +75,18 @@ Endoscope::~Endoscope() = default;
 
 void Endoscope::set_light(double gain, double bias_grey) { workspace_->gain = gain, workspace_->bias = bias_grey; }
 
-void Endoscope::move_view(const Eigen::Vector3d& view_m) {
+void Endoscope::move_view(const Eigen::Vector3d& view_m, const Eigen::Vector3d& lamp_m) {
   view_m_ = view_m;
-  nodes_.set_lamp(options_.light_position_m - view_m);
+  nodes_.set_lamp(options_.light_position_m + lamp_m - view_m);
 }
 
-void Endoscope::render(double t, std::uint64_t frame_index, cv::Mat& grey, const Eigen::Vector3d* tip) {
+void Endoscope::render(double t, std::uint64_t frame_index, cv::Mat& grey, const ToolPose* tool) {
   grey.create(camera_.height, camera_.width, CV_8UC1);
   surface_.at(t, state_);
   state_.t_camera_local -= view_m_;
-  tool_.place(tip != nullptr ? Eigen::Vector3d(*tip - view_m_) : Eigen::Vector3d(0, 0, -1));
+  ToolPose place = tool != nullptr ? *tool : ToolPose(Eigen::Vector3d(0, 0, -1));
+  if (tool != nullptr) place.tip -= view_m_;
+  tool_.place(place);
   const NodeGrid& grid = nodes_.grid();
   // One picture takes a few milliseconds; simple partitions keep the scheduling out of it.
   tbb::parallel_for(tbb::blocked_range<int>(0, grid.size(), kNodesAtOnce),

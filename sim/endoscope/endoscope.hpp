@@ -24,13 +24,14 @@ class Endoscope {
             std::uint64_t seed, const ToolOptions& tool = {}, std::shared_ptr<const TissueTexture> texture = nullptr);
   ~Endoscope();
 
-  /// Picture at time t (s) into `grey` (CV_8UC1 of the camera's size, allocated if it is not). `tip`: the tool's tip in
-  /// the camera frame (m), null for no tool. Noise is that of `frame_index`.
-  void render(double t, std::uint64_t frame_index, cv::Mat& grey, const Eigen::Vector3d* tip = nullptr);
+  /// Picture at time t (s) into `grey` (CV_8UC1 of the camera's size, allocated if it is not). `tool`: null for
+  /// none. Noise is that of `frame_index`.
+  void render(double t, std::uint64_t frame_index, cv::Mat& grey, const ToolPose* tool = nullptr);
 
-  /// Looks from another place from now on: `view_m` to the side of the camera frame in which all else is given (the
-  /// second view of a stereo endoscope, parallel to the first). The lamp stays where it is.
-  void move_view(const Eigen::Vector3d& view_m);
+  /// Looks from `view_m` from now on, without turning; all else stays given in the first camera frame. The lamp moves by
+  /// `lamp_m`: as far as the view where the robot carries the endoscope, as far as the left endoscope for the right view
+  /// of a stereo pair.
+  void move_view(const Eigen::Vector3d& view_m, const Eigen::Vector3d& lamp_m = Eigen::Vector3d::Zero());
 
   std::shared_ptr<const TissueTexture> texture() const { return texture_; }
 

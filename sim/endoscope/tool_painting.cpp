@@ -52,7 +52,12 @@ void shade_marker(const MarkerConstants& constants, const float* x, const float*
   constexpr float kMiddle = 0.5f * (kMarkerTexels - 1), kScale = static_cast<float>(kMarkerScale);
   constexpr float kLast = kMarkerTexels - 2 + 0.999f;
   for (int i = 0; i < count; ++i) {
-    float p = (x[i] * k.depth - k.x) * kScale + kMiddle, q = (y[i] * k.depth - k.y) * kScale + kMiddle;
+    // where the ray (x, y, 1) meets the plate
+    const float ahead = x[i] * k.axes[2][0] + y[i] * k.axes[2][1] + k.axes[2][2];
+    const float depth = k.centre[2] / (ahead > 0.05f ? ahead : 0.05f);
+    const float along = x[i] * k.axes[0][0] + y[i] * k.axes[0][1] + k.axes[0][2];
+    const float across = x[i] * k.axes[1][0] + y[i] * k.axes[1][1] + k.axes[1][2];
+    float p = (along * depth - k.centre[0]) * kScale + kMiddle, q = (across * depth - k.centre[1]) * kScale + kMiddle;
     p = p > 0 ? p : 0, q = q > 0 ? q : 0;
     p = p < kLast ? p : kLast, q = q < kLast ? q : kLast;  // the margin is uncovered
     const int ip = static_cast<int>(p), iq = static_cast<int>(q), at = iq * kMarkerTexels + ip;

@@ -21,7 +21,8 @@ void shade_shaft(const ShaftConstants& constants, const float* x, const float* y
 
 struct MarkerConstants {
   const float* texels;  ///< kMarkerTexels^2 grey levels, then as many covers
-  float depth, x, y;    ///< of the centre, in half sides
+  float axes[3][3];     ///< the plate's x, y and normal, camera frame
+  float centre[3];      ///< of the plate along these, in half sides
   float light;
 };
 

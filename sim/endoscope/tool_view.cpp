@@ -52,7 +52,7 @@ std::vector<std::string> ToolOptions::validate() const {
   if (marker_offset_m.head<2>().cwiseAbs().maxCoeff() < half + 0.0005)
     problems.emplace_back("marker_offset_m lets the marker hide the tip");
   const Eigen::Vector3d d = direction.normalized();
-  for (const Eigen::Vector3d& corner : marker_corners(*this, Eigen::Vector3d::Zero())) {
+  for (const Eigen::Vector3d& corner : marker_corners(*this, ToolPose(Eigen::Vector3d::Zero()))) {
     const double s = std::max(0.0, corner.head<2>().dot(d.head<2>()) / std::max(1e-9, d.head<2>().squaredNorm()));
     const double front = s * d.z() - radius_m * std::min(1.0, s / taper_m);
     if (corner.z() > front + 1e-9) {
@@ -64,24 +64,27 @@ std::vector<std::string> ToolOptions::validate() const {
   return problems;
 }
 
-std::array<Eigen::Vector3d, 4> marker_corners(const ToolOptions& options, const Eigen::Vector3d& tip_camera) {
-  const Eigen::Vector3d centre = tip_camera + options.marker_offset_m;
+std::array<Eigen::Vector3d, 4> marker_corners(const ToolOptions& options, const ToolPose& pose) {
   const double h = options.marker_side_m / 2;
-  return {centre + Eigen::Vector3d(-h, -h, 0), centre + Eigen::Vector3d(h, -h, 0), centre + Eigen::Vector3d(h, h, 0),
-          centre + Eigen::Vector3d(-h, h, 0)};
+  const auto corner = [&](double x, double y) {
+    return Eigen::Vector3d(pose.tip + pose.turn * (options.marker_offset_m + Eigen::Vector3d(x, y, 0)));
+  };
+  return {corner(-h, -h), corner(h, -h), corner(h, h), corner(-h, h)};
 }
 
 ToolView::ToolView(const tracking::Camera& camera, const ToolOptions& options)
     : camera_(camera), options_(options), grid_(camera.width, camera.height), marker_(paint_marker()) {
   const auto problems = options_.validate();
   if (!problems.empty()) throw ConfigError(fmt::format("tool: {}", fmt::join(problems, "; ")));
-  direction_ = options_.direction.normalized();
+  direction_ = rest_direction_ = options_.direction.normalized();
   const std::vector<double> rays = node_rays(camera, grid_);
   rays_.assign(rays.begin(), rays.end());
 }
 
-void ToolView::place(const Eigen::Vector3d& tip_camera) {
-  tip_ = tip_camera;
+void ToolView::place(const ToolPose& pose) {
+  tip_ = pose.tip;
+  turn_ = pose.turn;
+  direction_ = turn_ * rest_direction_;
   left_ = right_ = top_ = bottom_ = 0;
   if (!(tip_.allFinite() && tip_.z() > kNearest_m)) return;
   // Box around circles along the axis. Points far outside the picture, where the distortion model may fold back, are
@@ -100,7 +103,7 @@ void ToolView::place(const Eigen::Vector3d& tip_camera) {
   for (double s = 0; s <= 0.1; s += 0.002)
     include(tip_ + s * direction_, std::min(1.0, s / options_.taper_m) * options_.radius_m);
   if (options_.marker_side_m > 0)
-    for (const auto& corner : marker_corners(options_, tip_)) include(corner, 0.0005);
+    for (const auto& corner : marker_corners(options_, pose)) include(corner, 0.0005);
   left_ = static_cast<int>(std::clamp(low_u, 0.0, 1.0 * camera_.width));
   right_ = static_cast<int>(std::clamp(high_u + 1, 1.0 * left_, 1.0 * camera_.width));
   top_ = static_cast<int>(std::clamp(low_v, 0.0, 1.0 * camera_.height));
@@ -129,18 +132,22 @@ void ToolView::paint_row(int v, float* cover, float* grey, float* work) const {
   shaft.brightness = static_cast<float>(options_.brightness);
   shade_shaft(shaft, x, y, last - first, cover, grey);
   if (options_.marker_side_m <= 0) return;
-  const Eigen::Vector3d centre = tip_ + options_.marker_offset_m;
+  const Eigen::Vector3d centre = tip_ + turn_ * options_.marker_offset_m;
   if (centre.z() <= kNearest_m) return;
   const double fall_off = std::pow(kReferenceDepth_m / centre.z(), 2);
   const double per_half = 2 / options_.marker_side_m;
-  shade_marker(
-      {marker_.data(), static_cast<float>(centre.z() * per_half), static_cast<float>(centre.x() * per_half),
-       static_cast<float>(centre.y() * per_half), static_cast<float>(options_.brightness * std::min(fall_off, 1.2))},
-      x, y, last - first, cover, grey);
+  MarkerConstants marker;
+  marker.texels = marker_.data();
+  marker.light = static_cast<float>(options_.brightness * std::min(fall_off, 1.2));
+  for (int k = 0; k < 3; ++k)
+    for (int axis = 0; axis < 3; ++axis) marker.axes[axis][k] = static_cast<float>(turn_(k, axis));
+  for (int axis = 0; axis < 3; ++axis)
+    marker.centre[axis] = static_cast<float>(turn_.col(axis).dot(centre) * per_half);
+  shade_marker(marker, x, y, last - first, cover, grey);
 }
 
-void draw_tool(ToolView& view, const Eigen::Vector3d& tip_camera, cv::Mat& grey, cv::Mat* colour) {
-  view.place(tip_camera);
+void draw_tool(ToolView& view, const ToolPose& pose, cv::Mat& grey, cv::Mat* colour) {
+  view.place(pose);
   std::vector<float> cover(static_cast<std::size_t>(grey.cols)), level(cover.size()), work(view.work_size());
   for (int v = 0; v < grey.rows; ++v) {
     const auto [first, last] = view.reach(v);
@@ -160,15 +167,14 @@ void draw_tool(ToolView& view, const Eigen::Vector3d& tip_camera, cv::Mat& grey,
   }
 }
 
-void draw_tool(const tracking::Camera& camera, const ToolOptions& options, const Eigen::Vector3d& tip_camera,
-               cv::Mat& grey, cv::Mat* colour) {
+void draw_tool(const tracking::Camera& camera, const ToolOptions& options, const ToolPose& pose, cv::Mat& grey, cv::Mat* colour) {
   if (grey.type() != CV_8UC1 || grey.cols != camera.width || grey.rows != camera.height)
     throw ConfigError(fmt::format("draw_tool: picture of {} x {} px for a camera of {} x {}, or not 8-bit grey",
                                   grey.cols, grey.rows, camera.width, camera.height));
   if (colour != nullptr && (colour->type() != CV_8UC3 || colour->size() != grey.size()))
     throw ConfigError("draw_tool: the colour picture must be CV_8UC3 and as large as the grey one");
   ToolView view(camera, options);
-  draw_tool(view, tip_camera, grey, colour);
+  draw_tool(view, pose, grey, colour);
 }
 
 }  // namespace heartservo::sim

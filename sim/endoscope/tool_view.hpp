@@ -39,8 +39,17 @@ struct ToolOptions {
   std::vector<std::string> validate() const;
 };
 
+/// Where the tool is: its tip, and how far it has turned from the options' direction and marker; camera frame, m.
+struct ToolPose {
+  Eigen::Vector3d tip;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  ToolPose(const Eigen::Vector3d& tip_camera) : tip(tip_camera) {}  // NOLINT: a tip is a pose of a tool unturned
+  ToolPose(const Eigen::Vector3d& tip_camera, const Eigen::Matrix3d& turn_camera)
+      : tip(tip_camera), turn(turn_camera) {}
+};
+
 /// Corners of the marker, camera frame, m, clockwise from top left.
-std::array<Eigen::Vector3d, 4> marker_corners(const ToolOptions& options, const Eigen::Vector3d& tip_camera);
+std::array<Eigen::Vector3d, 4> marker_corners(const ToolOptions& options, const ToolPose& pose);
 
 /// Draws tools through one camera; keeps what depends on the camera only. Not to be shared between threads except
 /// through paint_row().
@@ -49,8 +58,8 @@ class ToolView {
   /// Throws ConfigError on options that do not validate.
   ToolView(const tracking::Camera& camera, const ToolOptions& options);
 
-  /// Sets the tip (camera frame, m). A tip behind the camera hides the tool.
-  void place(const Eigen::Vector3d& tip_camera);
+  /// A tip behind the camera hides the tool.
+  void place(const ToolPose& pose);
 
   /// Pixels of the tool in row v: first and last + 1; equal when the row is free of it.
   std::array<int, 2> reach(int v) const;
@@ -63,18 +72,18 @@ class ToolView {
  private:
   tracking::Camera camera_;
   ToolOptions options_;
-  Eigen::Vector3d direction_;
+  Eigen::Vector3d direction_, rest_direction_;
   NodeGrid grid_;
   std::vector<float> rays_;
   std::vector<float> marker_;  // grey and cover, kMarkerTexels^2 each
   Eigen::Vector3d tip_{0, 0, -1};
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
   int left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;  // px, end exclusive
 };
 
 /// Draws the tool into `grey` (CV_8UC1, the camera's size) and, unless null, `colour` (CV_8UC3). Exact to the distorted
 /// camera; edges are anti-aliased. For pictures of any source; for many of them keep a ToolView.
-void draw_tool(const tracking::Camera& camera, const ToolOptions& options, const Eigen::Vector3d& tip_camera,
-               cv::Mat& grey, cv::Mat* colour);
-void draw_tool(ToolView& view, const Eigen::Vector3d& tip_camera, cv::Mat& grey, cv::Mat* colour);
+void draw_tool(const tracking::Camera& camera, const ToolOptions& options, const ToolPose& pose, cv::Mat& grey, cv::Mat* colour);
+void draw_tool(ToolView& view, const ToolPose& pose, cv::Mat& grey, cv::Mat* colour);
 
 }  // namespace heartservo::sim

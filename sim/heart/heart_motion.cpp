@@ -38,8 +38,8 @@ std::vector<double> drawn_beats(const HeartMotionOptions& o, std::uint64_t seed,
 
 std::vector<std::string> HeartMotionOptions::validate() const {
   std::vector<std::string> problems;
-  if (profile != "six_line" && profile != "sharp" && profile != "still" && profile != "rail")
-    problems.push_back(fmt::format("profile '{}' is not six_line, sharp, still or rail", profile));
+  if (profile != "six_line" && profile != "sharp" && profile != "still" && profile != "sine" && profile != "rail")
+    problems.push_back(fmt::format("profile '{}' is not six_line, sharp, still, sine or rail", profile));
   if (!(rail.travel_m >= 0 && rail.period_s > 0 && std::isfinite(rail.travel_m) && rail.turn_rad.allFinite()))
     problems.emplace_back("rail needs a travel_m of 0 or more, a period_s above 0 and a finite turn_rad");
   for (const double value : {heart_rate_hz, respiration_rate_hz})
@@ -62,7 +62,7 @@ HeartMotion::HeartMotion(const HeartMotionOptions& options, std::uint64_t seed, 
     : options_(checked(options)),
       heart_(plausible_beats(std::move(r_peaks_s)), 1 / options.heart_rate_hz, kSystole_s),
       respiration_(respiration_clock(options, seed, duration_s)) {
-  const bool beats = options_.profile != "still" && !on_rail();
+  const bool beats = options_.profile == "six_line" || options_.profile == "sharp";
   if (beats) harmonics_ = options_.profile == "sharp" ? profile::kCardiacLines : 4;
   const double scale = beats ? options_.amplitude_scale : 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -90,6 +90,8 @@ Eigen::Vector3d HeartMotion::displacement(double t) const {
     const double way = t / options_.rail.period_s, there = 2 * std::abs(way - std::floor(way + 0.5));
     return {0, 0, options_.rail.travel_m * (there - 0.5)};
   }
+  if (options_.profile == "sine")
+    return options_.sine_amplitude_m * std::sin(kTau * options_.sine_hz * t) * Eigen::Vector3d::Unit(options_.sine_axis);
   const std::complex<double> breath = turn(respiration_phase(t));
   const std::complex<double> beat = turn(cardiac_phase(t));
   const double beat_gain = strength(breath);

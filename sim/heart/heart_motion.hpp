@@ -30,6 +30,8 @@ struct RailOptions {
 };
 
 struct HeartMotionOptions {
+  double sine_hz = 1, sine_amplitude_m = 0.002;
+  int sine_axis = 0;
   std::string profile = "sharp";
   double heart_rate_hz = profile::kHeartRate_hz;
   double respiration_rate_hz = profile::kRespiration_hz;
@@ -46,9 +48,12 @@ struct HeartMotionOptions {
 
   void fields(FieldVisitor& v) {
     v.choice({"profile", "",
-              "lines of motion: the six of Table 3, those and sharp harmonics (Table 4), or none; rail: no heart, see "
-              "motion.rail"},
-             profile, {"six_line", "sharp", "still", "rail"});
+              "lines of motion: the six of Table 3, those and sharp harmonics (Table 4), or none; sine: see sine_hz; "
+              "rail: no heart, see motion.rail"},
+             profile, {"six_line", "sharp", "still", "sine", "rail"});
+    v.field({"sine_hz", "Hz", "profile sine: frequency", 0.01, 100}, sine_hz);
+    v.field({"sine_amplitude_m", "m", "profile sine: amplitude", 0, 0.01}, sine_amplitude_m);
+    v.field({"sine_axis", "", "profile sine: 0, 1 or 2 for the camera's x, y or z", 0, 2}, sine_axis);
     v.field({"heart_rate_hz", "Hz", "mean heart rate", 0.3, 2}, heart_rate_hz);
     v.field({"respiration_rate_hz", "Hz", "mean respiration rate", 0.05, 1}, respiration_rate_hz);
     v.field({"amplitude_scale", "", "1 is the paper's heart: 11 mm peak to peak along z", 0, 3}, amplitude_scale);

@@ -8,64 +8,32 @@ namespace {
 
 constexpr double kSubstep_s = 1e-4;  // 150 times shorter than the fastest time constant allowed
 
-Eigen::Matrix3d rotation_of(const Eigen::Vector3d& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  if (angle == 0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
-}
-
-Eigen::Vector3d random_direction(std::mt19937_64& random) {
-  std::normal_distribution<double> normal(0, 1);
-  const double x = normal(random), y = normal(random), z = normal(random);
-  return Eigen::Vector3d(x, y, z).normalized();
-}
-
 }  // namespace
 
-void RobotOptions::fields(FieldVisitor& v) {
-  v.choice({"type", "", "cartesian: second order, limits, encoder noise; ideal: follows its reference exactly"}, type,
-           {"cartesian", "ideal"});
-  v.field({"bandwidth_hz", "Hz", "natural frequency of the robot's own servo", 1, 100}, bandwidth_hz);
-  v.field({"damping", "", "damping ratio of the robot's own servo", 0.1, 3}, damping);
-  v.field({"max_speed", "m/s", "the drives go no faster", 1e-3, 10}, max_speed);
-  v.field({"max_acceleration", "m/s^2", "the drives accelerate no faster", 1e-2, 1e4}, max_acceleration);
-  v.field({"encoder_noise_m", "m", "standard deviation of the tip position by encoders, per axis", 0, 1e-2},
-          encoder_noise_m);
-  v.field({"calibration_error_rad", "rad", "angle by which the stated base orientation is wrong (axis from the seed)",
-           0, 0.5},
-          calibration_error_rad);
-  v.field({"calibration_error_m", "m",
-           "how far off the stated position of the tip is at the start (direction from the seed)", 0, 0.05},
-          calibration_error_m);
-  v.field({"base_rotation_rad", "rad", "rotation vector of the robot's base in the camera frame", -3.2, 3.2},
-          base_rotation_rad);
-  v.field({"base_position_m", "m", "position of the robot's base in the camera frame", -2, 2}, base_position_m);
-  v.field({"start_error_m", "m", "where the tip is at the start, from the goal (camera frame)", -0.05, 0.05},
-          start_error_m);
+servo::ToolRobotData stated_data(const RobotOptions& options, const Eigen::Isometry3d& stated) {
+  servo::ToolRobotData data;
+  data.R_camera_base = stated.linear();
+  data.t_camera_base = stated.translation();
+  data.max_speed = options.max_speed;
+  data.max_acceleration = options.max_acceleration;
+  data.bandwidth_hz = options.bandwidth_hz * (1 + options.dynamics_error);
+  data.damping = options.damping;
+  data.lag_s = 2 * data.damping / (2 * M_PI * data.bandwidth_hz);
+  return data;
 }
 
 CartesianRobot::CartesianRobot(const RobotOptions& options, const Eigen::Vector3d& tip_camera, std::uint64_t seed)
-    : options_(options), random_(seed) {
-  T_camera_base_.linear() = rotation_of(options.base_rotation_rad);
-  T_camera_base_.translation() = options.base_position_m;
-  T_camera_base_.makeAffine();
-  // The stated calibration turns about the tip's start, so that its error there is calibration_error_m and no more.
-  T_camera_base_stated_ = T_camera_base_;
-  const Eigen::Matrix3d wrong = rotation_of(options.calibration_error_rad * random_direction(random_));
-  const Eigen::Vector3d off = options.calibration_error_m * random_direction(random_);
-  T_camera_base_stated_.linear() = wrong * T_camera_base_.linear();
-  T_camera_base_stated_.translation() = tip_camera + off + wrong * (T_camera_base_.translation() - tip_camera);
-  position_ = reference_ = T_camera_base_.inverse() * tip_camera;
-  velocity_ = reference_velocity_ = commanded_velocity_ = Eigen::Vector3d::Zero();
+    : options_(options),
+      random_(seed),
+      calibration_(options, tip_camera, random_),
+      drive_(options.max_speed, is_ideal() ? INFINITY : options.max_acceleration) {
+  position_ = reference_ = calibration_.T_camera_base.inverse() * tip_camera;
+  velocity_.setZero();
 }
 
 servo::ToolRobotData CartesianRobot::data() const {
-  servo::ToolRobotData data;
-  data.R_camera_base = T_camera_base_stated_.linear();
-  data.t_camera_base = T_camera_base_stated_.translation();
-  data.max_speed = options_.max_speed;
-  data.max_acceleration = options_.max_acceleration;
-  data.lag_s = options_.type == "ideal" ? 0 : 2 * options_.damping / (2 * M_PI * options_.bandwidth_hz);
+  servo::ToolRobotData data = stated_data(options_, calibration_.stated);
+  if (is_ideal()) data.max_acceleration = data.bandwidth_hz = data.lag_s = 0;
   return data;
 }
 
@@ -79,29 +47,12 @@ servo::ToolState CartesianRobot::read(double time_s) {
   return state;
 }
 
-void CartesianRobot::command(const servo::ToolCommand& command) {
-  queue_[queued_ % queue_.size()] = command;
-  ++queued_;
-}
-
-void CartesianRobot::take_commands() {
-  while (taken_ < queued_ && queue_[taken_ % queue_.size()].acts_at_s <= time_s_ + 0.5 * kSubstep_s) {
-    commanded_velocity_ = queue_[taken_ % queue_.size()].velocity;
-    const double speed = commanded_velocity_.norm();
-    if (speed > options_.max_speed) commanded_velocity_ *= options_.max_speed / speed;
-    ++taken_;
-  }
-}
-
 void CartesianRobot::substep(double dt) {
-  Eigen::Vector3d change = commanded_velocity_ - reference_velocity_;
-  const double length = change.norm(), longest = options_.max_acceleration * dt;
-  if (options_.type != "ideal" && length > longest) change *= longest / length;
-  reference_velocity_ += change;
-  reference_ += reference_velocity_ * dt;
-  if (options_.type == "ideal") {
+  const Eigen::Vector3d& reference_velocity = drive_.step(time_s_, dt);
+  reference_ += reference_velocity * dt;
+  if (is_ideal()) {
     position_ = reference_;
-    velocity_ = reference_velocity_;
+    velocity_ = reference_velocity;
     return;
   }
   const double w = 2 * M_PI * options_.bandwidth_hz;
@@ -112,12 +63,10 @@ void CartesianRobot::substep(double dt) {
 
 void CartesianRobot::advance_to(double time_s) {
   while (time_s_ < time_s) {
-    take_commands();
     const double dt = std::min(kSubstep_s, time_s - time_s_);
     substep(dt);
     time_s_ = dt < kSubstep_s ? time_s : time_s_ + dt;
   }
-  take_commands();
 }
 
 }  // namespace heartservo::sim

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "servo/control/registry.hpp"
 #include "tracking/camera/camera_file.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/planar/registry.hpp"
@@ -64,6 +65,8 @@ void Scene::fields(FieldVisitor& v) {
   v.group("picture", "light, lens, sensor and texture of the simulated picture", picture);
   v.group("tool", "the tool as it looks in the picture", tool);
   v.group("robot", "the robot that carries the tool", robot);
+  v.group("tissue", "what the tip feels when it presses", tissue);
+  v.list("occlusions", "swabs that cover the target for a while", occlusions);
   v.group("engines", "stages of the loop, by name", engines);
   v.group("tracking", "options of the trackers", tracking);
   v.group("loop", "latency, surgeon's offset, options of the stages", loop);
@@ -111,6 +114,12 @@ std::vector<std::string> Scene::validate() const {
     problems.emplace_back(
         "recorded frames have no landmark of known size: engines.estimator must be assumed_depth, region_depth or "
         "stereo_depth");
+  if (is_recorded() && (loop.force.on() || loop.eye_in_hand))
+    problems.emplace_back("loop.force and loop.eye_in_hand need a simulated heart: recorded frames cannot be touched or moved");
+  if (loop.eye_in_hand && loop.tip.use_marker)
+    problems.emplace_back("loop.eye_in_hand shows no tool: loop.tip.use_marker must be false");
+  if (is_recorded() && loop.path.type != "hold")
+    problems.emplace_back("loop.path needs the heart's orientation, which recorded frames do not tell: it must be hold");
   if (is_recorded() && ecg.source == "simulated")
     problems.emplace_back("ecg.source: recorded frames have no simulated heart; give a recorded ECG");
   if (!depth_rail.tilts_rad.empty() && (is_recorded() || motion.profile != "rail" || target.landmark < 0))

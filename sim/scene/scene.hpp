@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "servo/loop/loop_options.hpp"
+#include "sim/endoscope/occlusion.hpp"
 #include "sim/endoscope/picture_options.hpp"
 #include "sim/endoscope/tool_view.hpp"
 #include "sim/experiment/depth_rail_options.hpp"
 #include "sim/heart/ecg_options.hpp"
 #include "sim/heart/heart_motion.hpp"
 #include "sim/heart/heart_surface.hpp"
-#include "sim/robot/cartesian_robot.hpp"
+#include "sim/robot/robot_options.hpp"
 #include "sim/scene/depth_scene.hpp"
+#include "sim/tissue/kelvin_voigt.hpp"
 #include "tracking/planar/planar_tracker.hpp"
 #include "tracking/settings/fields.hpp"
 
@@ -99,6 +101,8 @@ struct Scene {
   PictureOptions picture;
   ToolOptions tool;
   RobotOptions robot;
+  TissueOptions tissue;
+  std::vector<OcclusionOptions> occlusions;
   EngineOptions engines;
   tracking::TrackerOptions tracking;
   servo::LoopOptions loop;

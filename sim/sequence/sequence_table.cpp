@@ -23,6 +23,7 @@ class SequenceTable final : public Table {
     return picked;
   }
   Eigen::Vector3d marker_to_tip() const override { return Eigen::Vector3d::Zero(); }
+  Eigen::Vector3d tool_axis() const override { return {0, 0, -1}; }
   Eigen::Vector3d offset() const override { return Eigen::Vector3d::Zero(); }
   double region_side_m(std::size_t) const override { return 0; }
   double marker_side_m() const override { return 0; }

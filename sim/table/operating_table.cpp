@@ -5,16 +5,21 @@
 #include "servo/loop/loop_record.hpp"
 #include "sim/endoscope/endoscope.hpp"
 #include "sim/endoscope/painted_pattern.hpp"
+#include "sim/robot/registry.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/table/heart_beats.hpp"
+#include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
+#include "sim/tissue/feeling_robot.hpp"
 
 namespace heartservo::sim {
 
 namespace {
 
 // Each consumer of randomness has its own stream of the scene's seed.
-enum class Stream : std::uint64_t { MOTION = 1, SURFACE, PICTURE, ROBOT, HAND, RIGHT_PICTURE, ECG };
+enum class Stream : std::uint64_t {
+  MOTION = 1, SURFACE, PICTURE, ROBOT, HAND, RIGHT_PICTURE, ECG, FORCE, SWAB, RIGHT_SWAB
+};
 std::uint64_t stream_seed(int seed, Stream stream) {
   return static_cast<std::uint64_t>(seed) * 1000003ULL + static_cast<std::uint64_t>(stream);
 }
@@ -23,6 +28,7 @@ class OperatingTable final : public Table, private tracking::FrameSource {
  public:
   explicit OperatingTable(const Scene& scene)
       : scene_(scene),
+        path_(surgeon_path(scene)),
         camera_(camera_of(scene, 0, 0)),
         endoscope_(
             camera_,
@@ -30,18 +36,22 @@ class OperatingTable final : public Table, private tracking::FrameSource {
                          heart_motion(scene, stream_seed(scene.seed, Stream::MOTION)),
                          stream_seed(scene.seed, Stream::SURFACE)),
             scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
-        robot_(scene.robot, goal_at(0) + scene.robot.start_error_m, stream_seed(scene.seed, Stream::ROBOT)) {
+        robot_(make_robot({scene.robot, goal_at(0) + scene.robot.start_error_m, tool_axis(),
+                           stream_seed(scene.seed, Stream::ROBOT)})),
+        feeling_(*robot_, [this](double t) { return force_at(t); },
+                 scene.loop.force.on() ? scene.tissue.force_noise_n : 0, stream_seed(scene.seed, Stream::FORCE)) {
+    if (scene.loop.eye_in_hand) start_goal_ = goal_at(0);
     if (!(scene.stereo.baseline_m > 0)) return;
     right_ = std::make_unique<Endoscope>(camera_, endoscope_.surface(), scene.picture,
                                          stream_seed(scene.seed, Stream::RIGHT_PICTURE), scene.tool,
                                          endoscope_.texture());
-    right_->move_view({scene.stereo.baseline_m, 0, 0});
   }
 
   tracking::FrameSource& frames() override { return *this; }
-  servo::ToolRobot& robot() override { return robot_; }
+  servo::ToolRobot& robot() override { return feeling_; }
   const tracking::Camera& camera() const override { return camera_; }
   Eigen::Vector3d marker_to_tip() const override { return -scene_.tool.marker_offset_m; }
+  Eigen::Vector3d tool_axis() const override { return scene_.tool.direction.normalized(); }
   Eigen::Vector3d offset() const override { return scene_.loop.offset_m; }
   std::string reference() const override { return "truth"; }
   std::unique_ptr<servo::EcgSource> ecg() const override {
@@ -89,12 +99,14 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     const TargetOptions& target = target_of(region);
     const double t = record.frame.time_s;
     servo::TruthSample truth;
-    truth.target = pose_at(target, t).translation();
-    truth.goal = goal_at(t);
-    truth.tip = tip_;
-    truth.goal_px = camera_.project(*truth.goal);
-    truth.tip_px = camera_.project(*truth.tip);
+    const Eigen::Isometry3d pose = pose_at(target, t);
+    truth.target = pose.translation() - camera_shift();
+    truth.goal = goal_at(t) + pose_at(scene_.target, t).linear().col(2) * record.depth_m;
+    truth.tip = scene_.loop.eye_in_hand ? Eigen::Vector3d(start_goal_ + tip_ - start_tip_) : tip_;
+    truth.goal_px = camera_.project(*truth.goal - camera_shift());
+    truth.tip_px = camera_.project(*truth.tip - camera_shift());
     truth.corners_px = region_at(target, t);
+    if (scene_.loop.force.on()) truth.force_n = force_at(t);
     return truth;
   }
 
@@ -104,12 +116,30 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     frame = tracking::Frame{};
     frame.sequence = count_;
     frame.time_s = static_cast<double>(count_) / scene_.camera.frame_rate_hz;
-    robot_.advance_to(frame.time_s);
-    tip_ = robot_.true_tip_camera();
-    endoscope_.render(frame.time_s, count_, frame.grey, scene_.show_tool ? &tip_ : nullptr);
-    if (right_) right_->render(frame.time_s, count_, frame.right, scene_.show_tool ? &tip_ : nullptr);
+    robot_->advance_to(frame.time_s);
+    tip_ = robot_->true_tip_camera();
+    const ToolPose pose{tip_, robot_->true_turn_camera()};
+    const ToolPose* tool = scene_.show_tool && !scene_.loop.eye_in_hand ? &pose : nullptr;
+    endoscope_.move_view(camera_shift(), camera_shift());  // its light is carried with it
+    endoscope_.render(frame.time_s, count_, frame.grey, tool);
+    cover(camera_shift(), frame.time_s, frame.grey, stream_seed(scene_.seed, Stream::SWAB));
+    if (right_) {
+      const Eigen::Vector3d view = camera_shift() + baseline();
+      right_->move_view(view, camera_shift());
+      right_->render(frame.time_s, count_, frame.right, tool);
+      cover(view, frame.time_s, frame.right, stream_seed(scene_.seed, Stream::RIGHT_SWAB));
+    }
     ++count_;
     return true;
+  }
+  // The swabs of this time, as seen from a view.
+  void cover(const Eigen::Vector3d& view, double t, cv::Mat& grey, std::uint64_t seed) const {
+    const Eigen::Vector3d target = pose_at(scene_.target, t).translation() - view;
+    const Eigen::Vector2d px = camera_.project(target);
+    for (const OcclusionOptions& occlusion : scene_.occlusions)
+      if (occlusion.covers(t))
+        draw_swab(grey, {px.x(), px.y()}, occlusion.radius_m * camera_.fx / target.z(), scene_.picture.noise_grey,
+                  seed + count_);
   }
   cv::Size size() const override { return {camera_.width, camera_.height}; }
   double frame_rate_hz() const override { return scene_.camera.frame_rate_hz; }
@@ -126,8 +156,6 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     return target.landmark >= 0 ? surface.T_camera_landmark(index_of(target), t)
                                 : surface.T_camera_point(target.x_m, target.y_m, t);
   }
-  Eigen::Vector3d goal_at(double t) const { return pose_at(scene_.target, t) * scene_.loop.offset_m; }
-
   // A person measures the distance before the start, as well as the scene says; the loop gets the number.
   template <class Pick>
   tracking::ScaleSource scale_of(const TargetOptions& target, std::mt19937_64& random, const Pick& pick) const {
@@ -145,6 +173,26 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     const double error = std::normal_distribution<double>(0, scale.sigma_m)(random);
     return tracking::known_scale({pose_at(target, 0).translation().z() + error, scale.sigma_m});
   }
+  Eigen::Vector3d goal_at(double t) const {
+    return pose_at(scene_.target, t) * (scene_.loop.offset_m + path_.position(t));
+  }
+
+  Eigen::Vector3d baseline() const { return {scene_.stereo.baseline_m, 0, 0}; }  // of the right view
+
+  // Eye-in-hand the robot carries the camera: how far it has moved, in the first picture's camera frame.
+  Eigen::Vector3d camera_shift() const {
+    return scene_.loop.eye_in_hand ? Eigen::Vector3d(tip_ - start_tip_) : Eigen::Vector3d::Zero();
+  }
+
+  // Of the tissue on the tip. The tissue is the plane of the target's x and y, as near as the tip comes to it.
+  double force_at(double t) const {
+    constexpr double kHalf_s = 5e-4;
+    const Eigen::Vector3d tip = robot_->true_tip_camera();
+    const auto depth = [&](double time) { return (pose_at(scene_.target, time).inverse() * tip).z(); };
+    const double now = depth(t), surface_rate = (depth(t + kHalf_s) - depth(t - kHalf_s)) / (2 * kHalf_s);
+    const Eigen::Vector3d normal = pose_at(scene_.target, t).linear().col(2);
+    return contact_force(scene_.tissue, now, surface_rate + normal.dot(robot_->true_velocity_camera()));
+  }
 
   // Corners of the region in the picture.
   tracking::Quad region_at(const TargetOptions& target, double t) const {
@@ -152,22 +200,25 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     tracking::Quad quad;
     if (target.landmark >= 0) {
       const auto corners = surface.landmark_corners(index_of(target), t);
-      for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(corners[i]);
+      for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(corners[i] - camera_shift());
       return quad;
     }
     const double h = target.side_m / 2, x = target.x_m, y = target.y_m;
     const tracking::Quad material = tracking::rectangle(x - h, y - h, 2 * h, 2 * h);
-    for (std::size_t i = 0; i < 4; ++i) quad[i] = camera_.project(surface.point(material[i].x(), material[i].y(), t));
+    for (std::size_t i = 0; i < 4; ++i)
+      quad[i] = camera_.project(surface.point(material[i].x(), material[i].y(), t) - camera_shift());
     return quad;
   }
 
   Scene scene_;
+  servo::SurgeonPath path_;
   tracking::Camera camera_;
   Endoscope endoscope_;
   std::unique_ptr<Endoscope> right_;  // null for one view
-  CartesianRobot robot_;
-  Eigen::Vector3d tip_ = robot_.true_tip_camera();
-  Eigen::Vector3d start_tip_ = tip_;
+  std::unique_ptr<SimulatedRobot> robot_;
+  FeelingRobot feeling_;
+  Eigen::Vector3d tip_ = robot_->true_tip_camera();
+  Eigen::Vector3d start_tip_ = tip_, start_goal_ = tip_;
   std::size_t count_ = 0;
 };
 

@@ -7,7 +7,7 @@
 #include "servo/loop/loop_record.hpp"
 #include "sim/endoscope/painted_pattern.hpp"
 #include "sim/endoscope/tool_view.hpp"
-#include "sim/robot/cartesian_robot.hpp"
+#include "sim/robot/registry.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/table/heart_beats.hpp"
 #include "sim/table/point_tracks.hpp"
@@ -34,16 +34,17 @@ class RecordedTable final : public Table, private tracking::FrameSource {
         offset_(chosen_offset()),
         tool_(tool_from(side_)),
         view_(camera_, tool_),
-        robot_(scene.robot, target_start() + offset_ + scene.robot.start_error_m,
-               static_cast<std::uint64_t>(scene.seed)) {
+        robot_(make_robot({scene.robot, target_start() + offset_ + scene.robot.start_error_m, tool_axis(),
+                           static_cast<std::uint64_t>(scene.seed)})) {
     offset_px_ = camera_.project(target_start() + offset_) - camera_.project(target_start());
     if (!scene.recording.reference.empty()) find_reference(resolve(scene, scene.recording.reference));
   }
 
   tracking::FrameSource& frames() override { return *this; }
-  servo::ToolRobot& robot() override { return robot_; }
+  servo::ToolRobot& robot() override { return *robot_; }
   const tracking::Camera& camera() const override { return camera_; }
   Eigen::Vector3d marker_to_tip() const override { return -tool_.marker_offset_m; }
+  Eigen::Vector3d tool_axis() const override { return tool_.direction.normalized(); }
   Eigen::Vector3d offset() const override { return offset_; }
   double region_side_m(std::size_t) const override { return 0; }
   double marker_side_m() const override { return tool_.marker_side_m; }
@@ -88,12 +89,12 @@ class RecordedTable final : public Table, private tracking::FrameSource {
     if (count_ == 0 && frame.status != tracking::FrameStatus::OK)
       throw InputError(frame.note + "; the first frame must show the region");
     ++count_;
-    robot_.advance_to(frame.time_s);
-    tip_ = robot_.true_tip_camera();
+    robot_->advance_to(frame.time_s);
+    tip_ = robot_->true_tip_camera();
     if (frame.status != tracking::FrameStatus::OK || !scene_.show_tool) return true;
     frame.grey = frame.grey.clone();  // the source may keep its own
     if (!frame.colour.empty()) frame.colour = frame.colour.clone();
-    draw_tool(view_, tip_, frame.grey, frame.colour.empty() ? nullptr : &frame.colour);
+    draw_tool(view_, {tip_, robot_->true_turn_camera()}, frame.grey, frame.colour.empty() ? nullptr : &frame.colour);
     return true;
   }
   cv::Size size() const override { return source_->size(); }
@@ -166,10 +167,10 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   Eigen::Vector3d offset_;
   ToolOptions tool_;
   ToolView view_;
-  CartesianRobot robot_;
+  std::unique_ptr<SimulatedRobot> robot_;
   std::optional<Reference> reference_;
   Eigen::Vector2d offset_px_;
-  Eigen::Vector3d tip_ = robot_.true_tip_camera();
+  Eigen::Vector3d tip_ = robot_->true_tip_camera();
   Eigen::Vector3d start_tip_ = tip_;
   std::size_t count_ = 0, limit_ = scene_.max_frames > 0 ? scene_.max_frames : SIZE_MAX;
 };

@@ -46,6 +46,7 @@ class Table {
   /// Both cameras, where the frames have a right view.
   virtual std::optional<tracking::StereoCamera> stereo() const { return std::nullopt; }
   virtual Eigen::Vector3d marker_to_tip() const = 0;  ///< m, camera frame; the tool does not turn
+  virtual Eigen::Vector3d tool_axis() const = 0;      ///< from the tip along the shaft, camera frame
   virtual Eigen::Vector3d offset() const = 0;         ///< surgeon's offset in the target frame, m
   virtual double region_side_m(std::size_t region = 0) const = 0;  ///< of the square region followed; 0: unknown
   virtual double marker_side_m() const = 0;

@@ -21,8 +21,8 @@ void render(benchmark::State& state) {
   std::uint64_t frame = 0;
   for (auto _ : state) {
     const double t = 0.008 * frame;
-    const Eigen::Vector3d tip = endoscope.surface().T_camera_landmark(0, t) * Eigen::Vector3d(0.0028, 0.0028, -0.0006);
-    endoscope.render(t, frame++, grey, &tip);
+    const ToolPose tool(endoscope.surface().T_camera_landmark(0, t) * Eigen::Vector3d(0.0028, 0.0028, -0.0006));
+    endoscope.render(t, frame++, grey, &tool);
     benchmark::DoNotOptimize(grey.data);
   }
 }
@@ -32,7 +32,7 @@ void draw_tool_into_recorded_picture(benchmark::State& state) {
   tracking::Camera camera = tracking::Camera::pinhole(360, 288, 0.9);
   cv::Mat grey(288, 360, CV_8UC1, cv::Scalar(90)), colour(288, 360, CV_8UC3, cv::Scalar(60, 60, 120));
   ToolView view(camera, {});
-  for (auto _ : state) draw_tool(view, {0.003, 0.002, 0.05}, grey, &colour);
+  for (auto _ : state) draw_tool(view, Eigen::Vector3d(0.003, 0.002, 0.05), grey, &colour);
 }
 BENCHMARK(draw_tool_into_recorded_picture)->Unit(benchmark::kMillisecond);
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "servo/control/feed_forward.hpp"
 #include "servo/control/registry.hpp"
 
 namespace heartservo::servo {
@@ -8,11 +9,16 @@ namespace {
 ControlState state_of(const Eigen::Vector3d& tip, const Eigen::Vector3d& goal, const Eigen::Vector3d& goal_velocity) {
   ControlState s;
   s.period_s = 0.008;
-  s.tip_now = s.tip_then = tip;
+  s.tip_now = s.robot.reference = s.robot.tip = tip;
+  s.last_velocity.setZero();
   s.goal_now = goal;
   s.goal_then.valid = true;
   s.goal_then.position = goal;
   s.goal_then.velocity = goal_velocity;
+  for (int k = -1; k <= kLongestHorizon; ++k) {
+    auto& g = s.goals[static_cast<std::size_t>(k + 1)] = s.goal_then;
+    g.position = goal + k * s.period_s * goal_velocity;
+  }
   return s;
 }
 
@@ -21,7 +27,7 @@ Eigen::Vector3d features(const Eigen::Vector3d& p) { return {p.x() / p.z(), p.y(
 // The law's promise: each feature error decays as exp(-gain t).
 TEST(Ibvs, EachFeatureErrorDecaysAtTheGain) {
   const Eigen::Vector3d tip(0.004, -0.003, 0.052), goal(0.001, 0.002, 0.056);
-  const auto law = control_laws().make("ibvs", ControlOptions{7, 30});
+  const auto law = control_laws().make("ibvs", ControlSetup{ControlOptions{7, 30}});
   const Eigen::Vector3d v = law->velocity(state_of(tip, goal, {1, 1, 1}));
   const double dt = 1e-6;
   const Eigen::Vector3d rate = (features(tip + v * dt) - features(tip)) / dt;
@@ -30,7 +36,7 @@ TEST(Ibvs, EachFeatureErrorDecaysAtTheGain) {
 
 TEST(Ibvs, ReachesAStillGoal) {
   for (const auto& name : control_laws().names()) {
-    const auto law = control_laws().make(name, ControlOptions{});
+    const auto law = control_laws().make(name, {});
     Eigen::Vector3d tip(0.006, -0.004, 0.048);
     const Eigen::Vector3d goal(0.0, 0.003, 0.057);
     for (int k = 0; k < 250; ++k) tip += 0.008 * law->velocity(state_of(tip, goal, Eigen::Vector3d::Zero()));
@@ -38,15 +44,26 @@ TEST(Ibvs, ReachesAStillGoal) {
   }
 }
 
-TEST(Ibvs, FeedForwardAddsTheGoalsVelocityAndPlainDoesNot) {
+TEST(Ibvs, OnTheGoalNothingIsLeftToCorrect) {
   const Eigen::Vector3d p(0.001, 0.002, 0.055), velocity(0.03, -0.02, 0.05);
-  EXPECT_LT((control_laws().make("ibvs_feedforward", {})->velocity(state_of(p, p, velocity)) - velocity).norm(), 1e-12);
-  EXPECT_LT(control_laws().make("ibvs", {})->velocity(state_of(p, p, velocity)).norm(), 1e-12);
+  for (const char* name : {"ibvs", "ibvs_feedforward"})
+    EXPECT_LT(control_laws().make(name, {})->velocity(state_of(p, p, velocity)).norm(), 1e-12) << name;
+  EXPECT_TRUE(control_laws().make("ibvs_feedforward", {})->wants_feed_forward());
+  EXPECT_FALSE(control_laws().make("ibvs", {})->wants_feed_forward());
+}
+
+TEST(FeedForward, IsTheGoalsVelocityWhereItIsConstant) {
+  const Eigen::Vector3d p(0.001, 0.002, 0.055), velocity(0.03, -0.02, 0.05);
+  ToolRobotData robot;
+  robot.bandwidth_hz = 25;
+  const RobotLag lag(robot);
+  EXPECT_LT((feed_forward(state_of(p, p, velocity), lag) - velocity).norm(), 1e-12);
+  EXPECT_LT((asked_goal(state_of(p, p, velocity), lag, 0) - p - lag.lag_s * velocity).norm(), 1e-12);
 }
 
 TEST(Ibvs, PointsBehindTheCameraGiveNoFiniteVelocity) {
-  for (const auto& name : control_laws().names()) {
-    const auto law = control_laws().make(name, ControlOptions{});
+  for (const char* name : {"ibvs", "ibvs_feedforward"}) {
+    const auto law = control_laws().make(name, {});
     EXPECT_FALSE(law->velocity(state_of({0, 0, -0.01}, {0, 0, 0.05}, Eigen::Vector3d::Zero())).allFinite());
     EXPECT_FALSE(law->velocity(state_of({0, 0, 0.05}, {0, NAN, 0.05}, Eigen::Vector3d::Zero())).allFinite());
   }

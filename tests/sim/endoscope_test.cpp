@@ -36,7 +36,12 @@ Endoscope endoscope(const PictureOptions& options = {}, std::uint64_t seed = 7, 
 
 cv::Mat picture(Endoscope& from, double t, std::uint64_t frame, const Eigen::Vector3d* tip = nullptr) {
   cv::Mat grey;
-  from.render(t, frame, grey, tip);
+  if (tip == nullptr) {
+    from.render(t, frame, grey);
+    return grey;
+  }
+  const ToolPose tool(*tip);
+  from.render(t, frame, grey, &tool);
   return grey;
 }
 

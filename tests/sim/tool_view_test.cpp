@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <Eigen/Dense>
 #include <functional>
 
@@ -59,6 +61,23 @@ TEST(ToolView, MarkerPatternLiesWhereItsCornersProject) {
     return (ray * middle.z() - middle.head<2>()) / ((corners[1].x() - corners[0].x()) / 2);
   };
   const Eigen::Vector2d shift = pattern_shift(tool_on(60), kMarkerPattern, camera.project(middle), 17, plate);
+  EXPECT_LT(shift.norm(), 0.02) << shift.transpose();
+}
+
+TEST(ToolView, TheMarkerOfATurnedToolLiesWhereItsCornersProject) {
+  const tracking::Camera camera = paper_camera();
+  const ToolPose pose(kTip, Eigen::AngleAxisd(0.12, Eigen::Vector3d(1, -2, 0.7).normalized()).toRotationMatrix());
+  cv::Mat grey(camera.height, camera.width, CV_8UC1, cv::Scalar(60));
+  draw_tool(camera, {}, pose, grey, nullptr);
+  const auto corners = marker_corners({}, pose);
+  const Eigen::Vector3d middle = (corners[0] + corners[2]) / 2;
+  const Eigen::Vector3d x = (corners[1] - corners[0]) / 2, y = (corners[3] - corners[0]) / 2, normal = x.cross(y);
+  const auto plate = [&](double u, double v) -> Eigen::Vector2d {
+    const Eigen::Vector3d ray = camera.normalise({u, v}).homogeneous();
+    const Eigen::Vector3d p = ray * (normal.dot(middle) / normal.dot(ray)) - middle;
+    return {p.dot(x) / x.squaredNorm(), p.dot(y) / y.squaredNorm()};
+  };
+  const Eigen::Vector2d shift = pattern_shift(grey, kMarkerPattern, camera.project(middle), 15, plate);
   EXPECT_LT(shift.norm(), 0.02) << shift.transpose();
 }
 

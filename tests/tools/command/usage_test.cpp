@@ -10,7 +10,7 @@ TEST_F(Usage, EveryCommandHasHelpWithAnExample) {
   const Outcome program = run({"--help"});
   EXPECT_EQ(program.code, 0);
   EXPECT_NE(program.out.find("Example: heartservo "), std::string::npos) << program.out;
-  for (const std::string command : {"servo", "track", "render", "scene", "calibrate", "camera"}) {
+  for (const std::string command : {"servo", "track", "render", "scene", "calibrate", "camera", "stabilise"}) {
     EXPECT_NE(program.out.find("\n  " + command + " "), std::string::npos) << command << " is not in\n" << program.out;
     const Outcome o = run({command, "--help"});
     EXPECT_EQ(o.code, 0);
@@ -31,7 +31,8 @@ TEST_F(Usage, ListsEnginesWithoutASource) {
   const Outcome servo = run({"servo", "--list"});
   EXPECT_EQ(servo.code, 0);
   for (const char* name :
-       {"\ntracker ", "esm ", "landmark_refined ", "constant_acceleration ", "ibvs_feedforward ", "ideal "})
+       {"\ntracker ", "esm ", "landmark_refined ", "constant_acceleration ", "ibvs_feedforward ", "mpc ", "ideal ",
+        "trocar "})
     EXPECT_NE(("\n" + servo.out).find(name), std::string::npos) << name << " is not in\n" << servo.out;
   const Outcome track = run({"track", "--list"});
   EXPECT_EQ(track.code, 0);

@@ -1,0 +1,115 @@
+#include "tools/servo_run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+
+#include "servo/loop/loop.hpp"
+#include "servo/loop/score.hpp"
+#include "servo/safety/run_checks.hpp"
+#include "sim/table/stages.hpp"
+#include "sim/table/table.hpp"
+#include "tools/album.hpp"
+#include "tools/command.hpp"
+#include "tools/interrupt.hpp"
+#include "tools/loop_table.hpp"
+#include "tools/overlay.hpp"
+#include "tools/progress.hpp"
+#include "tools/servo_summary.hpp"
+#include "tracking/settings/errors.hpp"
+
+namespace heartservo::tools {
+
+namespace {
+
+constexpr double kMostUnscored = 0.9;  // share of a run that may be spent on settling
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+void refuse_hopeless(const servo::LoopOptions& options, const sim::Scene& scene, const servo::ToolRobot& robot) {
+  const auto reasons = servo::reasons_to_refuse(options, scene.engines.controller, robot.data());
+  if (!reasons.empty()) throw ConfigError(fmt::format("the run is refused: {}", fmt::join(reasons, "; ")));
+}
+
+ReportPicture overlay(const servo::LoopRecord& r, const servo::TruthSample& truth, tracking::TargetTracker& tracker) {
+  ReportPicture picture{"", canvas_of(r.frame), {region_key(r.track)}};
+  cv::Mat mask;
+  tracker.mark_left_out(mask);
+  if (tint_left_out(picture.bgr, mask)) picture.keys.push_back(left_out_key());
+  draw_region(picture.bgr, r.track);
+  draw_goal_and_tip(picture.bgr, truth.goal_px, truth.tip_px);
+  picture.keys.push_back(goal_and_tip_key());
+  return picture;
+}
+
+}  // namespace
+
+void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_hz) {
+  sim::Scene& scene = request.scene;
+  const double last_s = frames == 0 ? 0 : static_cast<double>(frames - 1) / frame_rate_hz;
+  if (request.settle_s >= 0 && request.settle_s > last_s)
+    throw ConfigError(
+        fmt::format("--settle-s {} leaves nothing to score: the last frame is at {:.3g} s", request.settle_s, last_s));
+  if (request.settle_s >= 0 || scene.settle_s <= kMostUnscored * last_s) return;
+  if (!request.quiet && scene.settle_s > 0)
+    fmt::print(stderr, "heartservo: the run ends at {:.3g} s, too soon for settle_s ({} s): scored from {:.3g} s on\n",
+               last_s, scene.settle_s, 0.5 * last_s);
+  scene.settle_s = 0.5 * last_s;
+}
+
+ServoOutcome run_loop(ServoRequest request) {
+  sim::Scene& scene = request.scene;
+  const auto table = sim::make_table(scene);
+  const servo::LoopOptions loop_options = sim::loop_options(scene, *table);
+  refuse_hopeless(loop_options, scene, table->robot());
+  servo::LoopStages stages = sim::make_stages(scene, *table);
+  tracking::TargetTracker& tracker = *stages.target_tracker;  // for the pictures; the loop owns it
+  servo::Loop loop(table->frames(), table->robot(), std::move(stages), loop_options, table->marker_to_tip(), now_s);
+  const auto picked = table->picked();
+  if (const std::string why = loop.start(picked.target, picked.marker); !why.empty())
+    throw ConfigError(fmt::format("{}: the region cannot be tracked: {}", request.source, why));
+
+  const std::size_t expected = table->frames().frame_count().value_or(0);
+  if (scene.is_recorded() && expected > 0) fit_settling(request, expected, loop_options.frame_rate_hz);
+  if (request.before_run) request.before_run();
+  ServoOutcome outcome;
+  outcome.frames = make_loop_table(rows_ahead(expected));
+  servo::Score score(scene.settle_s, 1 / loop_options.frame_rate_hz);
+  score.reserve(rows_ahead(expected));
+  Album album(expected, [](double px) { return fmt::format("{:.1f} px from the goal", px); });
+  ServoRunFacts facts;
+  const double begin = now_s();
+  {
+    const Interrupt interrupt;
+    Progress progress(request.label, expected, request.quiet);
+    servo::LoopRecord record;
+    while (!(facts.interrupted = interrupt.requested()) && loop.step(record)) {
+      const servo::TruthSample truth = table->truth(record);
+      score.add(record, truth);
+      append(outcome.frames, record, truth);
+      const double off_px = record.frame.time_s < scene.settle_s ? NAN : (truth.tip_px - truth.goal_px).norm();
+      if (record.frame.status == tracking::FrameStatus::OK)
+        album.look_at({outcome.frames.rows() - 1, record.frame.time_s, off_px, "",
+                       record.track.state == tracking::TrackState::LOST},
+                      [&] { return overlay(record, truth, tracker); });
+      progress.update(outcome.frames.rows());
+    }
+  }
+  facts.scene = is_scene(request.source) ? stem_of(request.source) : request.source;
+  facts.reference = table->reference();
+  facts.reference_point = table->reference_point();
+  facts.camera = scene.camera.calibration.empty() ? "assumed pinhole" : scene.camera.calibration;
+  facts.frame_rate_hz = loop_options.frame_rate_hz;
+  facts.stop_reason = loop.stop_reason();
+  facts.real_time_factor =
+      static_cast<double>(outcome.frames.rows()) / loop_options.frame_rate_hz / std::max(1e-9, now_s() - begin);
+  outcome.summary = servo_summary(score.summary(), scene, facts);
+  outcome.pictures = album.pictures();
+  outcome.stop_reason = facts.stop_reason;
+  outcome.interrupted = facts.interrupted;
+  outcome.scene = scene;
+  return outcome;
+}
+
+}  // namespace heartservo::tools

@@ -1,0 +1,39 @@
+#pragma once
+// One closed loop, from scene to summary: what `servo` does once, and its comparisons and sweeps many times.
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sim/scene/scene.hpp"
+#include "tools/report/report.hpp"
+#include "tools/time_table.hpp"
+
+namespace heartservo::tools {
+
+struct ServoRequest {
+  sim::Scene scene;
+  std::string source;    ///< as the command line names it
+  std::string label;     ///< of the progress bar
+  double settle_s = -1;  ///< asked for on the command line; below 0: the scene's
+  bool quiet = false;
+  std::function<void()> before_run;  ///< called when nothing stands against the run any more
+};
+
+struct ServoOutcome {
+  nlohmann::json summary;
+  TimeTable frames{{"time_s"}};
+  std::vector<ReportPicture> pictures;
+  sim::Scene scene;  ///< as it was run
+  std::string stop_reason;
+  bool interrupted = false;
+};
+
+/// A run too short for the scene's settling time would score nothing. Unless the command line asks for that time, its
+/// second half is scored then, and says so. Throws ConfigError.
+void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_hz);
+
+/// Throws ConfigError for what is refused before the run, InputError for what cannot be read.
+ServoOutcome run_loop(ServoRequest request);
+
+}  // namespace heartservo::tools
