@@ -30,6 +30,7 @@ struct ServoOptions {
   RecordedOptions recorded;
   std::string tracker, estimator, predictor, controller, robot, reference, point, sweep;
   double latency_ms = -1, settle_s = -1;
+  bool no_video = false;
 };
 
 template <class Registry>
@@ -87,6 +88,7 @@ int finish(const ServoOptions& o, RunFolder& folder, ServoOutcome& outcome, cons
   if (!outcome.stop_reason.empty()) tail(outcome.frames, kFlight_s).write_csv(folder.file("flight.csv"));
   const TimeTable plotted = with_motion(outcome.frames);
   Report report = servo_report(outcome.summary, plotted, outcome.pictures, config_text(outcome.scene, "servo"));
+  report.video = outcome.video;
   if (extra != nullptr) report.tables.insert(report.tables.begin(), *extra);
   finish_run(folder, report, o.run, text);
   if (!outcome.stop_reason.empty() && extra == nullptr) {
@@ -107,8 +109,10 @@ int run_servo(const ServoOptions& o) {
   engines.controller = controllers.front();
   sim::require_valid(request.scene, o.run.source);
   std::optional<RunFolder> folder;
-  request.before_run = [&] {
+  request.before_run = [&]() -> std::filesystem::path {
     if (!folder) folder.emplace(run_path(o.run, "servo"));
+    const bool several = !o.sweep.empty() || predictors.size() * controllers.size() > 1;
+    return several || o.no_video ? std::filesystem::path() : folder->file("video.webm");
   };
   if (!o.sweep.empty()) {
     if (predictors.size() > 1) throw ConfigError("--sweep-frequency compares control laws; give one predictor");
@@ -160,6 +164,7 @@ Command add_servo_command(CLI::App& program) {
                   "residual and margins against a sine target of frequencies from LOW to HIGH, in Hz")
       ->type_name("LOW:HIGH");
   app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(finite(0, 1e4));
+  app->add_flag("--no-video", o.no_video, "no short film of the run in the report");
   app->add_flag("--list", o.run.list, "list the engines and exit");
   app->footer(
       "Examples:\n  heartservo servo scenes/pig_2007.yaml\n"
