@@ -87,7 +87,9 @@ int finish(const ServoOptions& o, RunFolder& folder, ServoOutcome& outcome, cons
   outcome.frames.write_csv(folder.file("frames.csv"));
   if (!outcome.stop_reason.empty()) tail(outcome.frames, kFlight_s).write_csv(folder.file("flight.csv"));
   const TimeTable plotted = with_motion(outcome.frames);
-  Report report = servo_report(outcome.summary, plotted, outcome.pictures, config_text(outcome.scene, "servo"));
+  const TimeTable spectrum = servo_spectrum(plotted, outcome.summary);
+  Report report =
+      servo_report(outcome.summary, plotted, spectrum, outcome.pictures, config_text(outcome.scene, "servo"));
   report.video = outcome.video;
   if (extra != nullptr) report.tables.insert(report.tables.begin(), *extra);
   finish_run(folder, report, o.run, text);

@@ -38,7 +38,7 @@ struct ReportSeries {
   bool is_truth = false;  ///< what the others should be: drawn broad and pale below them
 };
 
-/// Columns over the table's first: time, or frequency. All plots over time zoom and point together.
+/// Columns over the table's first: time, or frequency. Plots over time of one table zoom and point together.
 struct ReportPlot {
   std::string title;
   std::string y_label;  ///< with the unit people read: "mm"

@@ -150,12 +150,13 @@
     graphs.push({g, plot});
   });
   const timed = graphs.filter(p => over_time(p.plot));
-  if (timed.length > 1) Dygraph.synchronize(timed.map(p => p.g), {selection: true, zoom: true, range: false});
+  // Plots of the same table are about the same run: they zoom and point together.
+  new Set(timed.map(p => p.plot.table)).forEach(table => {
+    const together = timed.filter(p => p.plot.table === table).map(p => p.g);
+    if (together.length > 1) Dygraph.synchronize(together, {selection: true, zoom: true, range: false});
+  });
 
-  function whole() {
-    if (timed.length) timed[0].g.resetZoom();
-    graphs.filter(p => !over_time(p.plot)).forEach(p => p.g.resetZoom());
-  }
+  function whole() { graphs.forEach(p => p.g.resetZoom()); }
   document.querySelectorAll('button.whole').forEach(b => b.addEventListener('click', whole));
 
   // Arrows pan, + and - zoom, 0 shows the whole run.
