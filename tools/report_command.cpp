@@ -79,8 +79,8 @@ Command add_report_command(CLI::App& program) {
   app->add_option("--out", o.out, "the page (default report.html)")->type_name("FILE");
   app->add_flag("--quiet", o.quiet, "say nothing");
   app->footer(
-      "Examples:\n  heartservo report runs/demo --out demo.html\n"
-      "  heartservo report runs/with_mpc runs/with_ibvs --out both.html");
+      "Examples:\n  heartservo report RUN --out page.html\n"
+      "  heartservo report RUN ANOTHER_RUN --out both.html");
   return {app, [options] { return run_report(*options); }};
 }
 

@@ -125,7 +125,7 @@ ReportTable summary_table(const std::vector<StoredRun>& runs, bool differing) {
   std::vector<std::string> order;
   std::vector<std::map<std::string, std::string>> texts(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) flatten(runs[i].summary, "", texts[i], order);
-  ReportTable table{differing ? "What differs" : "Summary", {"summary.json"}, {}, ""};
+  ReportTable table{differing ? "What differs" : "Summary", {"summary.json"}, {}, "", true};
   for (const auto& label : labels_of(runs)) table.header.push_back(label);
   for (const auto& path : order) {
     std::vector<std::string> row{path};

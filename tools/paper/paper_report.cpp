@@ -61,7 +61,7 @@ void add_pictures(PaperPage& page, const StoredRun& run, const std::string& figu
 }
 
 int number_in(const std::string& config, const char* key) {
-  const YAML::Node node = YAML::Load(config)[key];
+  const YAML::Node node = YAML::Load(config)["artificial"][key];
   return node ? node.as<int>(0) : 0;
 }
 
@@ -80,7 +80,8 @@ void add_motion(const fs::path& runs, PaperPage& page) {
   page.report.plots.push_back({"Fig. 4: the first landmark's motion, above 1 Hz", "mm", axes("beat", "m"), 1e3,
                                "Measured by tracking the 5 mm plate; camera frame.", &motion});
   page.report.plots.push_back({"Fig. 4: respiration along Z, and along X and Y", "mm", axes("respiration", "m"), 1e3,
-                               "What lies below 1 Hz; the paper has about 6 mm along Z.", &motion});
+                               "What lies below 1 Hz, about its mean; the paper has about 6 mm along Z.", &motion});
+  page.report.plots.back().about_mean = true;
   ReportPlot density{"Power spectral density (Table 3)", "mm²/Hz", axes("density", "m2_hz"), 1e6, "", &spectrum};
   density.log_from = 1e-4;
   page.report.plots.push_back(density);
@@ -91,7 +92,8 @@ void add_motion(const fs::path& runs, PaperPage& page) {
 
 void fill_paper_page(const fs::path& runs, const std::vector<Experiment>& experiments, PaperPage& page) {
   Report& report = page.report;
-  ReportTable commands{"How each was made", {"experiment", "command"}, {}, "Each run folder has a page of its own."};
+  ReportTable commands{
+      "How each was made", {"experiment", "command"}, {}, "Each run folder has a page of its own.", true};
   for (const auto& experiment : experiments) {
     commands.rows.push_back({experiment.title, command_line(experiment)});
     if (experiment.name == "sequence") {

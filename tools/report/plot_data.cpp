@@ -72,6 +72,7 @@ std::string plot_data(const Report& report) {
                      {"unit", plot.y_label},
                      {"scale", plot.scale},
                      {"log_from", plot.log_from},
+                     {"about_mean", plot.about_mean},
                      {"x", x},
                      {"table", index},
                      {"series", series}});

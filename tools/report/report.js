@@ -16,8 +16,13 @@
     const columns = data.tables[plot.table];
     const series = plot.series.map(s => columns[s.column]);
     const lowest = plot.log_from > 0 ? plot.log_from : -Infinity;
-    const value = v => v === null ? null : Math.max(v * plot.scale, lowest);
-    return columns[plot.x].map((t, i) => [t].concat(series.map(s => value(s[i]))));
+    const mean = s => {
+      const known = plot.about_mean ? s.filter(v => v !== null) : [];
+      return known.reduce((sum, v) => sum + v, 0) / Math.max(known.length, 1);
+    };
+    const means = series.map(mean);
+    const value = (v, less) => v === null ? null : Math.max((v - less) * plot.scale, lowest);
+    return columns[plot.x].map((t, i) => [t].concat(series.map((s, k) => value(s[i], means[k]))));
   }
 
   // Seven colours, then the same ones dashed; truth broad and pale. Series are counted without it.
