@@ -31,6 +31,7 @@ struct ServoOptions {
   std::string tracker, estimator, predictor, controller, robot, reference, point, sweep;
   double latency_ms = -1, settle_s = -1;
   bool no_video = false;
+  int igtl_port = 0;
 };
 
 template <class Registry>
@@ -77,6 +78,7 @@ ServoRequest configure(const ServoOptions& o) {
   request.label = "servo " + stem_of(o.run.source);
   request.settle_s = o.settle_s;
   request.quiet = o.run.quiet;
+  request.igtl_port = o.igtl_port;
   if (o.run.frames && !scene.is_recorded()) fit_settling(request, scene.frame_count(), scene.camera.frame_rate_hz);
   return request;
 }
@@ -166,6 +168,9 @@ Command add_servo_command(CLI::App& program) {
                   "residual and margins against a sine target of frequencies from LOW to HIGH, in Hz")
       ->type_name("LOW:HIGH");
   app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(finite(0, 1e4));
+  app->add_option("--igtl", o.igtl_port, "send target, tip and picture to OpenIGTLink clients on this port (18944)")
+      ->check(CLI::Range(1, 65535))
+      ->type_name("PORT");
   app->add_flag("--no-video", o.no_video, "no short film of the run in the report");
   app->add_flag("--list", o.run.list, "list the engines and exit");
   app->footer(

@@ -13,6 +13,7 @@
 #include "sim/table/table.hpp"
 #include "tools/album.hpp"
 #include "tools/command.hpp"
+#include "tools/igtl/igtl_stream.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/loop_table.hpp"
 #include "tools/overlay.hpp"
@@ -55,6 +56,16 @@ ReportPicture overlay(const servo::LoopRecord& r, const servo::TruthSample& trut
   return picture;
 }
 
+void publish(IgtlStream& stream, const servo::LoopRecord& r) {
+  IgtlSnapshot snapshot;
+  snapshot.time_s = r.frame.time_s;
+  snapshot.has_target = r.target.state != tracking::TrackState::LOST;
+  snapshot.T_camera_target = r.target.T_camera_target;
+  snapshot.T_camera_tip.translation() = r.tip;
+  snapshot.grey = r.frame.grey;
+  stream.publish(snapshot);
+}
+
 }  // namespace
 
 void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_hz) {
@@ -92,6 +103,8 @@ ServoOutcome run_loop(ServoRequest request) {
   score.reserve(rows_ahead(expected));
   Album album(expected, [](double px) { return fmt::format("{:.1f} px from the goal", px); });
   std::optional<ShortVideo> video;
+  std::optional<IgtlStream> igtl;
+  if (request.igtl_port > 0) igtl.emplace(request.igtl_port);
   ServoRunFacts facts;
   double looped_s = 0;  // in the loop itself: not what is made for people to look at
   {
@@ -105,6 +118,7 @@ ServoOutcome run_loop(ServoRequest request) {
       return more;
     };
     while (!(facts.interrupted = interrupt.requested()) && step()) {
+      if (igtl) publish(*igtl, record);
       const servo::TruthSample truth = table->truth(record);
       score.add(record, truth);
       append(outcome.frames, record, truth);

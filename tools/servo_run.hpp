@@ -18,6 +18,7 @@ struct ServoRequest {
   std::string label;     ///< of the progress bar
   double settle_s = -1;  ///< asked for on the command line; below 0: the scene's
   bool quiet = false;
+  int igtl_port = 0;  ///< poses and pictures go out on this port, see igtl_stream.hpp; 0: they do not
   /// Called when nothing stands against the run any more. Returns where a short film of it goes; empty: none is made.
   std::function<std::filesystem::path()> before_run;
 };
