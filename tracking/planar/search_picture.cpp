@@ -19,7 +19,7 @@ void SearchPicture::build(const cv::Mat& grey, const cv::Rect& window, int level
   };
   for (int l = 0; l < levels; ++l) {
     PyramidLevel& level = glare_[static_cast<std::size_t>(l)];
-    level = {level.image, pyramid_.level(l).u0, pyramid_.level(l).v0, pyramid_.level(l).scale};
+    level.u0 = pyramid_.level(l).u0, level.v0 = pyramid_.level(l).v0, level.scale = pyramid_.level(l).scale;
     level.image.create(pyramid_.level(l).image.size(), CV_32FC1);
     if (l == 0) {
       for (int v = 0; v < finest.image.rows; ++v)
