@@ -16,10 +16,11 @@ MachineLimit add_machine(Results& results) {
   const MachineLimit machine = measure_machine();
   results.heading("this machine, one core");
   results.add("multiply-add, 32 bit", machine.gflops, "GF/s", NAN, true, machine.instructions);
-  results.add("gathered word", machine.gather_ns, "ns", NAN);
+  results.add("word by a gather instruction", machine.gather_ns, "ns", NAN);
+  results.add("scattered words loaded one by one", machine.load_ns, "ns", NAN);
   results.add("reading memory", machine.read_gb_s, "GB/s", NAN, true);
   results.all["machine"] = {{"instructions", machine.instructions}, {"gflops", machine.gflops},
-                            {"gather_ns", machine.gather_ns}, {"read_gb_s", machine.read_gb_s}};
+                            {"gather_ns", machine.gather_ns}, {"load_ns", machine.load_ns}, {"read_gb_s", machine.read_gb_s}};
   return machine;
 }
 
@@ -28,11 +29,12 @@ MachineLimit add_machine(Results& results) {
 int main(int argc, char** argv) {
   std::vector<std::string> parts;
   std::string json;
-  int frames = 600;
+  int frames = 600, memory_frames = 20000;
   CLI::App app("how long every stage takes, with the goal beside it");
-  app.add_option("--parts", parts, "of esm, peers, texture, composite, deformable, pose, chain, parallel; default: all")
+  app.add_option("--parts", parts, "of esm, peers, texture, composite, deformable, pose, chain, parallel, scaling, memory; default: all")
       ->delimiter(',');
   app.add_option("--frames", frames, "of the simulated loop")->capture_default_str();
+  app.add_option("--memory-frames", memory_frames, "of the long run")->capture_default_str();
   app.add_option("--json", json, "file for the results");
   CLI11_PARSE(app, argc, argv);
   try {
@@ -48,6 +50,8 @@ int main(int argc, char** argv) {
         {"pose", [&] { add_pose_rows(results); }},
         {"chain", [&] { add_chain_rows(results, frames); }},
         {"parallel", [&] { add_parallel_rows(results); }},
+        {"scaling", [&] { add_scaling_rows(results); }},
+        {"memory", [&] { add_memory_rows(results, memory_frames); }},
     };
     for (const auto& [name, run] : all)
       if (parts.empty() || std::count(parts.begin(), parts.end(), name)) run();

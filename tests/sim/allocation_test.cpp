@@ -102,7 +102,6 @@ TEST_P(Allocations, TheChainTakesNothingFromTheHeap) {
   constexpr int kFirst = 60, kCounted = 25;
   const Chain& chain = GetParam();
   Scene scene = load_scene(std::string(HEARTSERVO_SOURCE_DIR "/scenes/") + chain.scene);
-  scene.max_frames = kFirst + kCounted;
   scene.engines.tracker = chain.tracker;
   scene.engines.estimator = chain.estimator;
   scene.engines.predictor = chain.predictor;

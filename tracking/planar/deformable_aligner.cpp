@@ -65,7 +65,8 @@ class DeformableAligner final : public PatchAligner {
   bool bend(const PyramidLevel& picture, const Alignment& start, Alignment& a) {
     const Patch& patch = homography_->patch(0);
     before_ = a.bend;
-    for (int i = 0; i < options_.bend_iterations; ++i, ++a.iterations) {
+    for (int i = 0; i < options_.bend_iterations; ++i) {
+      ++a.iterations;
       const BentPoints bent = grid_->bend(a.bend);
       warp(picture, camera_, a.G_plane_patch, patch, Interpolation::CUBIC, buffers_.grey.data(), nullptr, bent);
       const Light light{a.gain, a.bias, bent.gain_offset};

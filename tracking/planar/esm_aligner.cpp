@@ -15,7 +15,9 @@ constexpr int kSmallestSide = 9;            // points; a coarser template says n
 constexpr std::size_t kAffinePoints = 500;  // fewer tell a shift, but with glare on them no shape
 constexpr double kNotThere = 2 * kTukey;    // beside the place the texture itself is what differs
 constexpr double kKnownNoise = 0.8;         // share of the gradient's noise that is certainly there
-constexpr double kNear_px = 0.1;            // where bilinear sampling has done its part; twice that a level up
+constexpr double kNear_px = 0.25;           // where bilinear sampling has done its part
+constexpr double kNearCoarse_px = 0.1;      // of a coarse level: as little as its points tell
+constexpr double kLeftOfStep = 0.2;         // near the place, at most: how far off the next step would still be
 constexpr double kNewMatrix_px = 0.3;       // a step this long wants a new matrix after it
 constexpr int kLastIterations = 5;          // with cubic sampling
 constexpr double kSmallestShare = 0.3;      // of the template's points must be in the picture
@@ -78,7 +80,7 @@ class EsmAligner final : public PatchAligner {
     for (int level = coarsest; level >= 0; --level) {
       const MotionModel at_level = level > 0 ? coarse_model(level) : model;
       if (!descend(picture.level(level), level, Interpolation::LINEAR, at_level, options_.max_iterations,
-                   kNear_px * (1 << level), a))
+                   level > 0 ? kNearCoarse_px * (1 << level) : kNear_px, a))
         return a;
       a.converged = false;
       if (level > 0 && at_level != MotionModel::TRANSLATION && a.fit() < kHopeless) return a;
@@ -93,7 +95,7 @@ class EsmAligner final : public PatchAligner {
                                                                             : MotionModel::AFFINE;
   }
 
-  // Iterates until no corner moves by more than `step_px`; false when there is nothing to align with. What the last
+  // Iterates until no corner is likely to be further off than `step_px`; false when there is nothing to align with. What the last
   // pass saw is what the alignment is judged by: the step after it is too small to matter.
   bool descend(const PyramidLevel& picture, int level, Interpolation interpolation, MotionModel model, int iterations,
                double step_px, Alignment& a) {
@@ -105,7 +107,8 @@ class EsmAligner final : public PatchAligner {
     if (a.bend.cols() > 0 && !grids_.empty()) bent = grids_[l].bend(a.bend);
     // few parameters cannot run away with what hides the region, and may look further
     const bool wide = interpolation == Interpolation::LINEAR && wide_;
-    for (int i = 0; i < iterations; ++i, ++a.iterations) {
+    for (int i = 0; i < iterations; ++i) {
+      ++a.iterations;
       warp(picture, camera_, a.G_plane_patch, patch, interpolation, buffers_.grey.data(), nullptr, bent);
       const Light light{a.gain, a.bias, bent.gain_offset};
       // Near the end the matrix of the pass before is as good: it only says how far to step, not where to end.
@@ -129,7 +132,8 @@ class EsmAligner final : public PatchAligner {
       a.bias += step[9];
       if (!a.G_plane_patch.allFinite() || !(a.gain > 0.05 && a.gain < 20)) return false;
       last_step_px_ = corner_step(M) * half_side_px_;
-      const bool last = last_step_px_ < step_px || i + 1 == iterations;
+      const double left_px = interpolation == Interpolation::CUBIC ? kLeftOfStep * last_step_px_ : last_step_px_;
+      const bool last = left_px < step_px || i + 1 == iterations;
       if (last) judge(light, reference, a);
       if (last) break;
     }

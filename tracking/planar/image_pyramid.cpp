@@ -4,6 +4,9 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "tracking/planar/halve.hpp"
+#include "tracking/planar/simd/copy_marked.hpp"
+
 namespace heartservo::tracking {
 
 namespace {
@@ -39,18 +42,17 @@ void ImagePyramid::build(const cv::Mat& grey, const cv::Rect& window, int levels
     level.scale = 1.0F / static_cast<float>(1 << i);
     level.u0 = static_cast<float>(w.x) * level.scale;
     level.v0 = static_cast<float>(w.y) * level.scale;
-    level.image = cv::Mat();
-    if (levels == 1) break;
+    if (i == 0) continue;
+    size = {(size.width + 1) / 2, (size.height + 1) / 2};
     std::vector<float>& storage = storage_[i];
     storage.resize(std::max(storage.size(), static_cast<std::size_t>(size.area())));
     level.image = cv::Mat(size, CV_32FC1, storage.data());
-    size = {(size.width + 1) / 2, (size.height + 1) / 2};
   }
   const bool glare = copy_window(grey(w), glare_grey);
   if (levels == 1) return;
-  levels_[0].bytes.convertTo(levels_[0].image, CV_32F);
   if (glare) return halve_around_glare(grey(w), glare_grey);
-  for (std::size_t i = 1; i < count; ++i) cv::pyrDown(levels_[i - 1].image, levels_[i].image);
+  for (std::size_t i = 1; i < count; ++i)
+    halve(i == 1 ? levels_[0].bytes : levels_[i - 1].image, levels_[i].image, scratch_);
 }
 
 // Glare becomes 255. Returns whether there is any.
@@ -61,24 +63,18 @@ bool ImagePyramid::copy_window(const cv::Mat& window, double glare_grey) {
   if (bytes_.size() < size) bytes_.resize(size);
   levels_[0].bytes = cv::Mat(window.rows, window.cols, CV_8UC1, bytes_.data() + stride + kBeyond, stride);
   const int glare = static_cast<int>(std::ceil(std::clamp(glare_grey, 0.0, 256.0)));
-  std::uint8_t any = 0;
-  for (int row = 0; row < window.rows; ++row) {
-    const std::uint8_t* from = window.ptr(row);
-    std::uint8_t* to = levels_[0].bytes.ptr(row);
-    for (int i = 0; i < window.cols; ++i) {
-      const std::uint8_t is_glare = from[i] >= glare ? 255 : 0;
-      to[i] = from[i] | is_glare;
-      any |= is_glare;
-    }
-  }
-  return any != 0;
+  bool any = false;
+  for (int row = 0; row < window.rows; ++row)
+    any |= simd::copy_marked(window.ptr(row), static_cast<std::size_t>(window.cols), glare, levels_[0].bytes.ptr(row));
+  return any;
 }
 
 void ImagePyramid::halve_around_glare(const cv::Mat& window, double glare_grey) {
   cv::compare(window, cv::Scalar(glare_grey), glare_, cv::CMP_GE);
   cv::dilate(glare_, glare_, cv::Mat(), cv::Point(-1, -1), kHalo);
   glare_.convertTo(clear_[0], CV_32F, -1.0 / 255, 1);
-  cv::multiply(levels_[0].image, clear_[0], clear_grey_[0]);
+  levels_[0].bytes.convertTo(clear_grey_[0], CV_32F);
+  cv::multiply(clear_grey_[0], clear_[0], clear_grey_[0]);
   for (std::size_t i = 1; i < static_cast<std::size_t>(count_); ++i) {
     const std::size_t from = (i + 1) % 2, to = i % 2;  // two buffers in turn: pyrDown must not work in place
     cv::pyrDown(clear_[from], clear_[to]);

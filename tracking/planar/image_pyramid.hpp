@@ -8,21 +8,21 @@ namespace heartservo::tracking {
 /// One level: shows the picture's window whose first pixel is (u0, v0) of the *full* picture at this level's scale; pixel
 /// (u, v) of the full picture is at (u / 2^level, v / 2^level).
 struct PyramidLevel {
-  cv::Mat image;  ///< CV_32FC1; of level 0 only where there are coarser ones
-  cv::Mat bytes;  ///< CV_8UC1, the same; of level 0 only. Readable one row and four pixels beyond its borders
+  cv::Mat image;  ///< CV_32FC1, of level 1 and up
+  cv::Mat bytes;  ///< CV_8UC1, of level 0; readable one row and four pixels beyond its borders
   float u0 = 0, v0 = 0;
   float scale = 1;  ///< 2^-level
 
   int cols() const { return bytes.empty() ? image.cols : bytes.cols; }
   int rows() const { return bytes.empty() ? image.rows : bytes.rows; }
-  /// `image`, made where it is not there.
+  /// CV_32FC1, a copy on level 0.
   cv::Mat floats() const;
 };
 
 /// Grey values from this on are glare or clipping and say nothing about the tissue.
 inline constexpr float kSaturatedGrey = 240;
 
-/// Grey picture, in float halved again and again (Gaussian, cv::pyrDown), only inside a window of it. Glare is not
+/// Grey picture, in float halved again and again (Gaussian, halve.hpp), only inside a window of it. Glare is not
 /// smeared into the coarse levels: their pixels are means over what is clear (normalised convolution, Knutsson &
 /// Westin, CVPR 1993), and 255 where little is.
 class ImagePyramid {
@@ -40,6 +40,7 @@ class ImagePyramid {
   std::vector<PyramidLevel> levels_;
   std::vector<std::uint8_t> bytes_;           // of level 0
   std::vector<std::vector<float>> storage_;   // of each level's image: grows, never shrinks
+  std::vector<float> scratch_;
   cv::Mat glare_, share_, clear_[2], clear_grey_[2];
   int count_ = 0;
 };

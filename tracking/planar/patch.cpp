@@ -71,6 +71,15 @@ void differentiate(const std::vector<float>& grey, Patch& patch) {
 Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,
                  int height) {
   Patch patch;
+  std::vector<float> scratch;
+  make_patch(level, camera, G_plane_patch, width, height, patch, scratch);
+  return patch;
+}
+
+void make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,
+                int height, Patch& patch, std::vector<float>& scratch) {
+  patch.template_share = Patch().template_share;
+  patch.gradient_noise = 0;
   patch.width = width;
   patch.height = height;
   patch.step = 2.0F / static_cast<float>(std::max(width, height) - 1);
@@ -79,8 +88,9 @@ Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::M
   patch.gradient_x.assign(n, 0);
   patch.gradient_y.assign(n, 0);
   patch.usable.assign(n, 0);
-  std::vector<float> inside(n);
-  warp(level, camera, G_plane_patch, patch, Interpolation::CUBIC, patch.grey.data(), inside.data());
+  scratch.resize(std::max(scratch.size(), n));
+  const float* inside = scratch.data();
+  warp(level, camera, G_plane_patch, patch, Interpolation::CUBIC, patch.grey.data(), scratch.data());
   differentiate(patch.grey, patch);
   for (int row = 1; row + 1 < height; ++row)
     for (int column = 1; column + 1 < width; ++column) {
@@ -96,7 +106,6 @@ Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::M
         for (int u = std::max(0, column - kRim); u <= std::min(width - 1, column + kRim); ++u)
           patch.usable[static_cast<std::size_t>(v * width + u)] = 0;
     }
-  return patch;
 }
 
 void quieten_gradient(Patch& patch) {

@@ -52,5 +52,8 @@ void quieten_gradient(Patch& patch);
 /// A patch of width x height points at the given level, grey values from the picture under G_plane_patch.
 Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,
                  int height);
+/// The same into a patch that may have memory already; `scratch` likewise.
+void make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,
+                int height, Patch& patch, std::vector<float>& scratch);
 
 }  // namespace heartservo::tracking

@@ -322,14 +322,11 @@ Track PlanarTracker::track(const Frame& frame) {
   if (readable) {
     aligner_->see(frame.grey);
     const bool was_locked = locked_;
-    Candidate found;
-    if (locked_) found = follow(frame);
-    if (!(found.quality >= options_.uncertain_quality)) {
-      found = reacquire(frame.grey);
-      if (!(found.quality >= found_again_quality())) {
-        found.quality = 0;
-        locked_ = false;
-      }
+    // What is not near its place is looked for in the whole picture from the next frame on: this one's time is spent.
+    Candidate found = locked_ ? follow(frame) : reacquire(frame.grey);
+    if (!(found.quality >= (locked_ ? options_.uncertain_quality : found_again_quality()))) {
+      found.quality = 0;
+      locked_ = false;
     }
     if (found.quality >= options_.uncertain_quality) {
       track.reacquired = !was_locked;

@@ -74,7 +74,7 @@ void add_composite_rows(Results& results) {
       tracking::Frame frame = frames[static_cast<std::size_t>(k % 198 < 100 ? k % 198 : 198 - k % 198)];
       frame.time_s = 0.008 * k;
       if (kind == "leaps" && k % 4 >= 2) {  // there and back, of changing length and direction
-        const double angle = 2.4 * k;
+        const double angle = 2.4 * (k / 4);
         const cv::Matx23d shift(1, 0, std::round(20 * std::cos(angle)), 0, 1, std::round(20 * std::sin(angle)));
         cv::Mat moved;
         cv::warpAffine(frame.grey, moved, shift, frame.grey.size(), cv::INTER_NEAREST, cv::BORDER_REFLECT_101);

@@ -27,7 +27,7 @@ struct ChainRun {
 ChainRun run_chain(const std::string& tracker, int frames) {
   sim::Scene scene = sim::load_scene(HEARTSERVO_SOURCE_DIR "/scenes/pig_2007.yaml");
   scene.engines.tracker = tracker;
-  scene.max_frames = static_cast<std::size_t>(frames);
+  scene.duration_s = frames / 125.0;
   const auto table = sim::make_table(scene);
   const auto options = sim::loop_options(scene, *table);
   servo::Loop loop(table->frames(), table->robot(), sim::make_stages(scene, *table), options, table->marker_to_tip(),

@@ -10,6 +10,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "tracking/planar/simd/fetch-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace heartservo::bench {
 namespace HWY_NAMESPACE {
@@ -34,8 +36,9 @@ double multiply_add(std::size_t rounds, float* out) {
   return 20.0 * static_cast<double>(rounds * hn::Lanes(d));
 }
 
-// Words gathered.
-double gather(const std::int32_t* words, int side, std::size_t rounds, float* out) {
+// Words fetched: by the processor's gather instruction, or one by one.
+template <bool kGather>
+double fetch_words(const std::int32_t* words, int side, std::size_t rounds, float* out) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
   auto sum = hn::Zero(di);
@@ -44,9 +47,20 @@ double gather(const std::int32_t* words, int side, std::size_t rounds, float* ou
   for (std::size_t r = 0; r < rounds; ++r)
     for (int row = 0; row < side; ++row)
       for (int i = 0; i < side; i += lanes, count += static_cast<std::size_t>(lanes))
-        sum = hn::Add(sum, hn::GatherOffset(di, words, hn::Iota(di, row * side + i)));
+        if constexpr (kGather)
+          sum = hn::Add(sum, hn::GatherOffset(di, words, hn::Iota(di, row * side + i)));
+        else
+          sum = hn::Add(sum, tracking::simd::HWY_NAMESPACE::fetch(
+                                 words, tracking::simd::HWY_NAMESPACE::Addresses(hn::Iota(di, row * side + i))));
   hn::StoreU(hn::ConvertTo(d, sum), d, out);
   return static_cast<double>(count);
+}
+
+double gather(const std::int32_t* words, int side, std::size_t rounds, float* out) {
+  return fetch_words<true>(words, side, rounds, out);
+}
+double load(const std::int32_t* words, int side, std::size_t rounds, float* out) {
+  return fetch_words<false>(words, side, rounds, out);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -59,6 +73,7 @@ namespace heartservo::bench {
 HWY_EXPORT(name_of_target);
 HWY_EXPORT(multiply_add);
 HWY_EXPORT(gather);
+HWY_EXPORT(load);
 
 namespace {
 
@@ -91,7 +106,8 @@ MachineLimit measure_machine() {
   limit.instructions = HWY_DYNAMIC_DISPATCH(name_of_target)();
   limit.gflops = 1e-9 * best_rate([&] { return HWY_DYNAMIC_DISPATCH(multiply_add)(3'000'000, sink); });
   const std::vector<std::int32_t> picture(kSide * kSide / 4 + 64, 1);
-  limit.gather_ns = 1e9 / best_rate([&] { return HWY_DYNAMIC_DISPATCH(gather)(picture.data(), kSide, 100, sink); });
+  limit.gather_ns = 1e9 / best_rate([&] { return HWY_DYNAMIC_DISPATCH(gather)(picture.data(), kSide, 30, sink); });
+  limit.load_ns = 1e9 / best_rate([&] { return HWY_DYNAMIC_DISPATCH(load)(picture.data(), kSide, 100, sink); });
   std::vector<std::uint64_t> memory(std::size_t{1} << 25, 1);
   volatile std::uint64_t seen = 0;
   limit.read_gb_s = 1e-9 * best_rate([&] {

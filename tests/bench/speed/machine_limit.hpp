@@ -6,7 +6,9 @@ namespace heartservo::bench {
 struct MachineLimit {
   const char* instructions = "";  ///< widest set that Highway picks here
   double gflops = 0;              ///< multiply-adds on independent registers, 2 operations each
-  double gather_ns = 0;           ///< one gathered 32-bit word out of a 64 KiB picture, neighbours next to each other
+  double gather_ns = 0;           ///< one 32-bit word by gather instructions out of 64 KiB, neighbours next to each other
+  double load_ns = 0;             ///< the same, each word loaded by itself
+  double word_ns() const { return gather_ns < load_ns ? gather_ns : load_ns; }
   double read_gb_s = 0;           ///< from memory, 256 MiB read once
 };
 

@@ -13,5 +13,7 @@ void add_deformable_rows(Results& results);
 void add_pose_rows(Results& results);
 void add_chain_rows(Results& results, int frames);
 void add_parallel_rows(Results& results);
+void add_scaling_rows(Results& results);
+void add_memory_rows(Results& results, int frames);
 
 }  // namespace heartservo::bench

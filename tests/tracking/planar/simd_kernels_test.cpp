@@ -9,6 +9,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scalar_alignment.hpp"
 #include "tracking/planar/quad.hpp"
+#include "tracking/planar/simd/copy_marked.hpp"
 #include "tracking/planar/simd/select.hpp"
 
 namespace heartservo::tracking {
@@ -220,6 +221,22 @@ TEST_P(Kernels, SelectIsNthElement) {
     std::sort(sorted.begin(), sorted.end());
     for (const std::size_t k : {std::size_t{0}, n / 2, n - 1}) EXPECT_EQ(simd::select(values.data(), n, k), sorted[k]);
   }
+}
+
+TEST_P(Kernels, CopyMarksWhatIsBright) {
+  auto random = test::seeded();
+  std::vector<unsigned char> from(77), to(77);
+  for (auto& v : from) v = static_cast<unsigned char>(random() % 256);
+  for (const int bright : {0, 1, 127, 128, 240, 255, 256}) {
+    EXPECT_EQ(simd::copy_marked(from.data(), from.size(), bright, to.data()),
+              std::any_of(from.begin(), from.end(), [&](int v) { return v >= bright; }))
+        << bright;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      EXPECT_EQ(to[i], from[i] >= bright ? 255 : from[i]) << i << ", " << bright;
+    }
+  }
+  const unsigned char dark[40] = {};
+  EXPECT_FALSE(simd::copy_marked(dark, 40, 1, to.data()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Machine, Kernels, testing::ValuesIn(hwy::SupportedAndGeneratedTargets()),

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "tracking/planar/simd/fetch-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace heartservo::tracking::simd {
 namespace HWY_NAMESPACE {
@@ -86,14 +88,14 @@ HWY_INLINE PlateSample sample(const DenseJob& job, V x, V y) {
   };
   V f, g;
   const VI i = node(x, f), j = node(y, g);
-  const VI at = hn::Add(hn::Mul(j, hn::Set(di, LandmarkTemplate::kSize)), i);
+  const Addresses at(hn::ShiftLeft<2>(hn::Add(hn::Mul(j, hn::Set(di, LandmarkTemplate::kSize)), i)));
   const Weights across = weights_at(f), down = weights_at(g);
   const V zero = hn::Zero(d);
   PlateSample s{{zero, zero, zero}, {zero, zero, zero}};
   for (int row = 0; row < 4; ++row) {
     V t = zero, tx = zero, soft = zero, soft_x = zero;
     for (int k = 0; k < 4; ++k) {
-      const VI word = hn::GatherIndex(di, job.nodes + (row - 1) * LandmarkTemplate::kSize + (k - 1), at);
+      const VI word = fetch(job.nodes + (row - 1) * LandmarkTemplate::kSize + (k - 1), at);
       const V grey = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(word)));
       const V softening = hn::ConvertTo(d, hn::ShiftRight<16>(word));
       t = hn::MulAdd(grey, across.w[k], t), tx = hn::MulAdd(grey, across.d[k], tx);

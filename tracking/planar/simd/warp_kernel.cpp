@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "tracking/planar/simd/fetch-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace heartservo::tracking::simd {
 namespace HWY_NAMESPACE {
@@ -60,12 +62,11 @@ struct Four {
 };
 
 template <bool kBytes>
-HWY_INLINE Four four_pixels(const WarpJob& w, VI at, std::ptrdiff_t row, bool outer) {
+HWY_INLINE Four four_pixels(const WarpJob& w, const Addresses& at, std::ptrdiff_t row, bool outer) {
   const Floats d;
   const Ints di;
-  if constexpr (kBytes) {  // a gathered word is all four
-    const auto* base = reinterpret_cast<const std::int32_t*>(w.bytes + row * w.stride - 1);
-    const VI word = hn::GatherOffset(di, base, at), low = hn::Set(di, 255);
+  if constexpr (kBytes) {  // a word is all four
+    const VI word = fetch(w.bytes + row * w.stride - 1, at), low = hn::Set(di, 255);
     Four f;
     f.p1 = hn::ConvertTo(d, hn::And(hn::ShiftRight<8>(word), low));
     f.p2 = hn::ConvertTo(d, hn::And(hn::ShiftRight<16>(word), low));
@@ -77,11 +78,12 @@ HWY_INLINE Four four_pixels(const WarpJob& w, VI at, std::ptrdiff_t row, bool ou
   } else {
     const float* base = w.image + row * w.stride;
     Four f;
-    f.p1 = hn::GatherIndex(d, base, at);
-    f.p2 = hn::GatherIndex(d, base + 1, at);
+    const auto pixel = [&](int i) HWY_ATTR { return hn::BitCast(d, fetch(base + i, at)); };
+    f.p1 = pixel(0);
+    f.p2 = pixel(1);
     if (outer) {
-      f.p0 = hn::GatherIndex(d, base - 1, at);
-      f.p3 = hn::GatherIndex(d, base + 2, at);
+      f.p0 = pixel(-1);
+      f.p3 = pixel(2);
     }
     return f;
   }
@@ -108,15 +110,16 @@ HWY_INLINE V combined(const Four& f, const Four& w) {
 
 template <bool kBytes, bool kCubic>
 HWY_INLINE V grey_at(const WarpJob& w, const Samples& s) {
+  const Addresses at(kBytes ? s.at : hn::ShiftLeft<2>(s.at));
   if constexpr (kCubic) {
     const Four across = cubic_weights(s.a), down = cubic_weights(s.b);
-    const V r0 = combined(four_pixels<kBytes>(w, s.at, -1, true), across);
-    const V r1 = combined(four_pixels<kBytes>(w, s.at, 0, true), across);
-    const V r2 = combined(four_pixels<kBytes>(w, s.at, 1, true), across);
-    const V r3 = combined(four_pixels<kBytes>(w, s.at, 2, true), across);
+    const V r0 = combined(four_pixels<kBytes>(w, at, -1, true), across);
+    const V r1 = combined(four_pixels<kBytes>(w, at, 0, true), across);
+    const V r2 = combined(four_pixels<kBytes>(w, at, 1, true), across);
+    const V r3 = combined(four_pixels<kBytes>(w, at, 2, true), across);
     return combined({r0, r1, r2, r3}, down);
   } else {
-    const Four top = four_pixels<kBytes>(w, s.at, 0, false), bottom = four_pixels<kBytes>(w, s.at, 1, false);
+    const Four top = four_pixels<kBytes>(w, at, 0, false), bottom = four_pixels<kBytes>(w, at, 1, false);
     const V t = hn::MulAdd(s.a, hn::Sub(top.p2, top.p1), top.p1);
     const V b = hn::MulAdd(s.a, hn::Sub(bottom.p2, bottom.p1), bottom.p1);
     return hn::MulAdd(s.b, hn::Sub(b, t), t);
