@@ -27,6 +27,10 @@ inline constexpr float kSaturatedGrey = 240;
 /// Westin, CVPR 1993), and 255 where little is.
 class ImagePyramid {
  public:
+  ImagePyramid() = default;
+  ImagePyramid(ImagePyramid&&) = default;  // no copies: levels point into their storage
+  ImagePyramid& operator=(ImagePyramid&&) = default;
+
   /// `window` is clipped to the picture and widened to multiples of 2^(levels-1). Memory is kept between calls.
   void build(const cv::Mat& grey, const cv::Rect& window, int levels, double glare_grey = kSaturatedGrey);
 

@@ -226,10 +226,11 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
 PlanarTracker::Candidate PlanarTracker::reacquire(const cv::Mat& grey) {
   pyramid_.build(grey, cv::Rect(0, 0, grey.cols, grey.rows), options_.levels, glare_grey());
   aligner_->forget();
-  // A frame has time for a part of the search: upright in every one, turned one way after the other, and so the places.
+  // A frame has time for a part of the search: upright in every one, turned one way after the other; the most alike
+  // places in every one, the others in turn.
   const auto n = static_cast<std::size_t>(lost_frames_++);
   return search(corners_of(last_.G_plane_patch), {std::hypot(grey.cols, grey.rows), 6, kStartsWhileLost,
-                                                  kSearchTurns_rad[n % 4], n / 4 % 2 * kStartsWhileLost});
+                                                  kSearchTurns_rad[n % 4], n});
 }
 
 // Correlates the template, as the last believed alignment and the reference show it, with a coarse level of the pyramid
@@ -266,9 +267,11 @@ PlanarTracker::Candidate PlanarTracker::search(const Quad& around, const SearchE
   }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Start& a, const Start& b) { return a.correlation > b.correlation; });
-  const std::size_t first = extent.first_start < starts.size() ? extent.first_start : 0;
-  starts.erase(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(first));
-  if (starts.size() > extent.starts) starts.resize(extent.starts);
+  if (starts.size() > extent.starts) {
+    const std::size_t last = extent.starts - 1;
+    std::swap(starts[last], starts[last + extent.turn % (starts.size() - last)]);
+    starts.resize(extent.starts);
+  }
   Candidate best;
   for (const Start& start : starts)
     if (const Candidate c = try_from(start.alignment, level, start.expected); c.quality > best.quality) {

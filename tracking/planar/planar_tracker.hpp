@@ -60,7 +60,7 @@ class PlanarTracker final : public TargetTracker {
     int places;               // of each view, best first
     std::size_t starts;       // of all views together, tried by aligning
     double turn_rad;          // of a further view; 0: none
-    std::size_t first_start = 0;  // how many of the best to leave out
+    std::size_t turn = 0;         // counts calls: the last start is another one of the rest each time
   };
 
   double glare_grey() const;

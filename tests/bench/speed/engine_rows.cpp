@@ -109,6 +109,7 @@ void add_deformable_rows(Results& results) {
   row("deformable 80 x 80, 5 x 5 control points", coarse, 80, 1.5);
   row("deformable 80 x 80, 8 x 8 control points (default)", {}, 80, NAN);
   row("deformable 240 x 240, 8 x 8 control points", {}, 240, NAN);
+  row("deformable 390 x 390, as in scenes/texture_only.yaml", {}, 390, 8);
 }
 
 void add_pose_rows(Results& results) {

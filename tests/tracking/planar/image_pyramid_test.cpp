@@ -18,7 +18,8 @@ ImagePyramid pyramid_of(const cv::Mat& image, double glare_grey = kSaturatedGrey
 
 // Largest difference of level 2 to that of a picture without glare, over the pixels that are not said to be glare.
 double smeared(const cv::Mat& with_glare, const cv::Mat& without, double glare_grey = kSaturatedGrey) {
-  const cv::Mat a = pyramid_of(with_glare, glare_grey).level(2).image, b = pyramid_of(without).level(2).image;
+  const cv::Mat a = pyramid_of(with_glare, glare_grey).level(2).image.clone();
+  const cv::Mat b = pyramid_of(without).level(2).image.clone();
   cv::Mat difference;
   cv::absdiff(a, b, difference);
   difference.setTo(0, a >= kSaturatedGrey);
