@@ -184,14 +184,16 @@ DensePose DenseRefiner::refine(const cv::Mat& grey, const LandmarkTemplate& plat
     result.pixels = count;
     result.covariance = variance * inverse.topLeftCorner<6, 6>();
     converged = result.iterations > kSettled &&
-                step.dot(A.topLeftCorner<kDenseParameters, kDenseParameters>() * step) < kConverged * variance;
+                step.dot(A.topLeftCorner<kDenseParameters, kDenseParameters>() * step) <
+                    kConverged * std::max(variance, kSmallestSigma * kSmallestSigma);
     if (converged) break;
   }
   result.share = result.pixels / static_cast<double>(std::max<std::size_t>(1, region_pixels_));
   T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
   result.T_camera_target = T;
   result.light = light;
-  result.likeness = 1 - result.rms_grey * result.rms_grey / std::max(1e-9, grey_variance());
+  const double noise = std::max(result.rms_grey, kSmallestSigma);  // a plain picture is like nothing
+  result.likeness = 1 - noise * noise / std::max(1e-9, grey_variance());
   result.valid = converged && result.share >= options_.smallest_share &&
                  result.likeness >= options_.smallest_likeness && result.covariance.allFinite();
   return result;
