@@ -88,7 +88,8 @@ int main(int argc, char** argv) {
   const Command commands[] = {add_servo_command(program),  add_track_command(program),   add_render_command(program),
                               add_scene_command(program),  add_texture_command(program), add_calibrate_command(program),
                               add_camera_command(program), add_predict_command(program), add_analyse_command(program),
-                              add_beats_command(program),  add_stabilise_command(program)};
+                              add_beats_command(program),  add_stabilise_command(program),
+                              add_capture_command(program)};
   try {
     program.parse(argc, argv);
     for (const Command& command : commands)

@@ -11,12 +11,16 @@
 #include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
 #include "tools/album.hpp"
+#include "tools/capture/capture_summary.hpp"
+#include "tools/capture/live_timing.hpp"
+#include "tools/capture/real_time.hpp"
 #include "tools/command.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/loop_table.hpp"
 #include "tools/overlay.hpp"
 #include "tools/progress.hpp"
 #include "tools/servo_summary.hpp"
+#include "tracking/frames/live_source.hpp"
 #include "tracking/settings/errors.hpp"
 
 namespace heartservo::tools {
@@ -60,7 +64,10 @@ void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_h
 
 ServoOutcome run_loop(ServoRequest request) {
   sim::Scene& scene = request.scene;
+  const RealTime real_time(request.real_time);  // before the table: a camera's thread inherits it
   const auto table = sim::make_table(scene);
+  tracking::LiveSource* live = table->frames().live();
+  if (request.real_time && !live) throw ConfigError("--real-time is for a camera: servo v4l2:/dev/video0");
   const servo::LoopOptions loop_options = sim::loop_options(scene, *table);
   refuse_hopeless(loop_options, scene, table->robot());
   servo::LoopStages stages = sim::make_stages(scene, *table);
@@ -74,7 +81,8 @@ ServoOutcome run_loop(ServoRequest request) {
   if (scene.is_recorded() && expected > 0) fit_settling(request, expected, loop_options.frame_rate_hz);
   if (request.before_run) request.before_run();
   ServoOutcome outcome;
-  outcome.frames = make_loop_table(rows_ahead(expected));
+  outcome.frames = make_loop_table(rows_ahead(expected), live != nullptr);
+  LiveTiming live_timing(loop_options.frame_rate_hz, rows_ahead(expected));
   servo::Score score(scene.settle_s, 1 / loop_options.frame_rate_hz);
   score.reserve(rows_ahead(expected));
   Album album(expected, [](double px) { return fmt::format("{:.1f} px from the goal", px); });
@@ -82,12 +90,14 @@ ServoOutcome run_loop(ServoRequest request) {
   const double begin = now_s();
   {
     const Interrupt interrupt;
-    Progress progress(request.label, expected, request.quiet);
+    Progress progress(request.label, expected, request.quiet || request.real_time);
     servo::LoopRecord record;
     while (!(facts.interrupted = interrupt.requested()) && loop.step(record)) {
       const servo::TruthSample truth = table->truth(record);
       score.add(record, truth);
       append(outcome.frames, record, truth);
+      if (live) live_timing.add(record, now_s());
+      if (request.real_time) continue;
       const double off_px = record.frame.time_s < scene.settle_s ? NAN : (truth.tip_px - truth.goal_px).norm();
       if (record.frame.status == tracking::FrameStatus::OK)
         album.look_at({outcome.frames.rows() - 1, record.frame.time_s, off_px, "",
@@ -105,6 +115,12 @@ ServoOutcome run_loop(ServoRequest request) {
   facts.real_time_factor =
       static_cast<double>(outcome.frames.rows()) / loop_options.frame_rate_hz / std::max(1e-9, now_s() - begin);
   outcome.summary = servo_summary(score.summary(), scene, facts);
+  if (live) {
+    outcome.summary["capture"] = json_of(live->report());
+    outcome.summary["live"] = live_timing.summary();
+    outcome.summary["live"]["real_time"] = real_time.granted();
+    outcome.device_failure = live->failure();
+  }
   outcome.pictures = album.pictures();
   outcome.stop_reason = facts.stop_reason;
   outcome.interrupted = facts.interrupted;

@@ -17,6 +17,7 @@ struct ServoRequest {
   std::string label;     ///< of the progress bar
   double settle_s = -1;  ///< asked for on the command line; below 0: the scene's
   bool quiet = false;
+  bool real_time = false;  ///< see real_time.hpp; the pictures of the report are left out
   std::function<void()> before_run;  ///< called when nothing stands against the run any more
 };
 
@@ -26,6 +27,7 @@ struct ServoOutcome {
   std::vector<ReportPicture> pictures;
   sim::Scene scene;  ///< as it was run
   std::string stop_reason;
+  std::string device_failure;  ///< the camera did not come back
   bool interrupted = false;
 };
 

@@ -9,6 +9,7 @@
 #include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
 #include "tools/artificial.hpp"
+#include "tools/capture/capture_summary.hpp"
 #include "tools/command.hpp"
 #include "tools/corner_truth.hpp"
 #include "tools/depth_rail.hpp"
@@ -205,7 +206,7 @@ void start_lanes(const TrackOptions& o, const Tracked& tracked, const tracking::
     lanes.emplace_back(lane_name(start, name, trackers.size() > 1),
                        tracking::trackers().make(name, lens, tracked.scene.tracking),
                        estimator_for(o, tracked, start.number > 0 ? start.number - 1 : 0), truth,
-                       rows_ahead(tracked.table->frames().frame_count().value_or(0)));
+                       rows_ahead(tracked.table->frames().frame_count().value_or(0)), tracked.table->frames().live());
     if (const std::string why = lanes.back().start(frame, start); !why.empty())
       throw ConfigError(fmt::format("{}: {} cannot be tracked by {}: {}", o.run.source,
                                     start.number > 0 ? fmt::format("region {}", start.number) : "the region", name,
@@ -297,6 +298,8 @@ int run_track(TrackOptions o) {
   if (!source.reference.empty()) summary["reference"] = source.reference;
   if (source.kind.point) summary["point"] = *source.kind.point;
   for (const auto& lane : lanes) summary["trackers"].push_back(lane.summary());
+  tracking::LiveSource* live = frames.live();
+  if (live) summary["capture"] = json_of(live->report());
   std::string text =
       fmt::format("{}: {} frames\n\n{}", o.run.source, count, terminal_text(tracker_table(summary), false));
   std::vector<ReportTable> paper;
@@ -307,10 +310,13 @@ int run_track(TrackOptions o) {
   }
   write_tables(folder, lanes);
   const TimeTable plotted = side_by_side(lanes);
+  if (live) text += "\n" + capture_text(summary["capture"]);
   finish_run(folder, track_report(summary, plotted, paper, album.pictures(lanes), tracked.config), o.run, text);
   if (!source.reference.empty() && with_truth == 0)
     fmt::print(stderr, "heartservo: {}: no row has the time of a frame, so no error is known; check --frame-rate-hz\n",
                source.reference);
+  if (live && !live->failure().empty())
+    throw DeviceError(fmt::format("{}; the frames before are in {}", live->failure(), folder.path().string()));
   return interrupted ? INTERRUPTED : DONE;
 }
 
@@ -320,7 +326,7 @@ Command add_track_command(CLI::App& program) {
   auto options = std::make_shared<TrackOptions>();
   TrackOptions& o = *options;
   CLI::App* app = program.add_subcommand("track", "follow a region; several trackers side by side");
-  add_run_options(*app, o.run, "image folder, printf pattern, video or scene (.yaml)");
+  add_run_options(*app, o.run, "image folder, printf pattern, video, recording, v4l2:/dev/video0 or scene (.yaml)");
   add_recording_options(*app, o.recorded, true);
   add_artificial_options(*app, o.artificial);
   app->add_option("--tracker", o.trackers, "trackers, separated by commas, or 'all'")->delimiter(',');
