@@ -34,6 +34,7 @@ struct ServoOptions {
   std::string tracker, estimator, predictor, controller, robot, reference, point, sweep;
   double latency_ms = -1, settle_s = -1;
   bool real_time = false;
+  bool no_video = false;
 };
 
 template <class Registry>
@@ -96,6 +97,7 @@ int finish(const ServoOptions& o, RunFolder& folder, ServoOutcome& outcome, cons
     report.tables.push_back(capture_table(outcome.summary["capture"]));
     report.tables.push_back(event_table(outcome.summary["capture"]));
   }
+  report.video = outcome.video;
   if (extra != nullptr) report.tables.insert(report.tables.begin(), *extra);
   finish_run(folder, report, o.run, text);
   if (!outcome.stop_reason.empty() && extra == nullptr) {
@@ -118,8 +120,11 @@ int run_servo(const ServoOptions& o) {
   engines.controller = controllers.front();
   sim::require_valid(request.scene, o.run.source);
   std::optional<RunFolder> folder;
-  request.before_run = [&] {
+  request.before_run = [&]() -> std::filesystem::path {
     if (!folder) folder.emplace(run_path(o.run, "servo"));
+    const bool several = !o.sweep.empty() || predictors.size() * controllers.size() > 1;
+    const bool live = tracking::v4l2::is_camera(request.scene.recording.source);  // a film would take the loop's time
+    return several || live || o.no_video ? std::filesystem::path() : folder->file("video.webm");
   };
   if (tracking::v4l2::is_camera(request.scene.recording.source) && predictors.size() * controllers.size() > 1)
     throw ConfigError("a camera's frames come only once: give one predictor and one controller");
@@ -178,6 +183,7 @@ Command add_servo_command(CLI::App& program) {
   app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(finite(0, 1e4));
   app->add_flag("--real-time", o.real_time,
                 "on a camera: real-time scheduling where allowed, memory locked, no pictures and no progress");
+  app->add_flag("--no-video", o.no_video, "no short film of the run in the report");
   app->add_flag("--list", o.run.list, "list the engines and exit");
   app->footer(
       "Examples:\n  heartservo servo scenes/pig_2007.yaml\n"

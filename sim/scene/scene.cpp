@@ -31,11 +31,10 @@ void check_depth(const Scene& scene, std::vector<std::string>& problems) {
     problems.push_back(fmt::format("depth.source: stereo needs {}", missing));
   if (region && scene.depth.source == "landmark" &&
       (scene.is_recorded() || scene.depth.landmark >= static_cast<int>(scene.surface.landmarks.size())))
-    problems.push_back(fmt::format("depth.landmark is {} but {}", scene.depth.landmark,
-                                   scene.is_recorded()
-                                       ? std::string("recorded frames have no landmark of known size")
-                                       : fmt::format("surface.landmarks has {} entries",
-                                                     scene.surface.landmarks.size())));
+    problems.push_back(fmt::format(
+        "depth.landmark is {} but {}", scene.depth.landmark,
+        scene.is_recorded() ? std::string("recorded frames have no landmark of known size")
+                            : fmt::format("surface.landmarks has {} entries", scene.surface.landmarks.size())));
   if (!scene.recording.right.empty() && scene.camera.calibration.empty())
     problems.emplace_back("recording.right needs camera.calibration, a stereo file");
 }
@@ -116,11 +115,13 @@ std::vector<std::string> Scene::validate() const {
         "recorded frames have no landmark of known size: engines.estimator must be assumed_depth, region_depth or "
         "stereo_depth");
   if (is_recorded() && (loop.force.on() || loop.eye_in_hand))
-    problems.emplace_back("loop.force and loop.eye_in_hand need a simulated heart: recorded frames cannot be touched or moved");
+    problems.emplace_back(
+        "loop.force and loop.eye_in_hand need a simulated heart: recorded frames cannot be touched or moved");
   if (loop.eye_in_hand && loop.tip.use_marker)
     problems.emplace_back("loop.eye_in_hand shows no tool: loop.tip.use_marker must be false");
   if (is_recorded() && loop.path.type != "hold")
-    problems.emplace_back("loop.path needs the heart's orientation, which recorded frames do not tell: it must be hold");
+    problems.emplace_back(
+        "loop.path needs the heart's orientation, which recorded frames do not tell: it must be hold");
   if (is_recorded() && ecg.source == "simulated")
     problems.emplace_back("ecg.source: recorded frames have no simulated heart; give a recorded ECG");
   if (!depth_rail.tilts_rad.empty() && (is_recorded() || motion.profile != "rail" || target.landmark < 0))

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+
+#include "tracking/settings/errors.hpp"
 
 namespace heartservo::tools::markup {
 
@@ -103,6 +107,16 @@ std::string image(const ReportPicture& picture) {
       "<figure class=\"picture\"><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
       "<figcaption>{}{}</figcaption></figure>\n",
       shown.cols, shown.rows, escaped(picture.caption), base64(png), escaped(picture.caption), keys);
+}
+
+std::string video(const ReportVideo& video) {
+  std::ifstream in(video.file, std::ios::binary);
+  const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(in), {}};
+  if (bytes.empty()) throw ConfigError(video.file.string() + ": the video cannot be read");
+  return fmt::format(
+      "<figure class=\"picture film\"><video controls loop muted playsinline src=\"data:video/webm;base64,{}\"></video>"
+      "<figcaption>{}</figcaption></figure>\n",
+      base64(bytes), escaped(video.caption));
 }
 
 std::string table(const ReportTable& table) {

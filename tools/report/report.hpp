@@ -26,6 +26,12 @@ struct ReportPicture {
   std::vector<PictureKey> keys = {};  ///< shown as a legend below
 };
 
+/// A short film inside the page, WebM.
+struct ReportVideo {
+  std::string caption;
+  std::filesystem::path file;  ///< read when the page is made; empty for none
+};
+
 struct ReportSeries {
   std::string label;      ///< "heart z"
   std::string column;     ///< of the table
@@ -59,6 +65,7 @@ struct Report {
   std::vector<std::string> notices;     ///< what a reader must know first: "ended by Ctrl-C after 12 s of 60 s"
   std::vector<ReportPlot> plots;        ///< the first is on the first screen: residual against motion
   std::vector<ReportPicture> pictures;  ///< so is the first of these
+  ReportVideo video;                    ///< after them
   std::vector<ReportTable> tables;
   const TimeTable* table = nullptr;  ///< must live until write_report() returns
   std::vector<ReportSeries>
