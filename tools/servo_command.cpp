@@ -33,7 +33,7 @@ struct ServoOptions {
   RecordedOptions recorded;
   std::string tracker, estimator, predictor, controller, robot, reference, point, sweep;
   double latency_ms = -1, settle_s = -1;
-  bool real_time = false;
+  bool real_time = false, show = false;
   bool no_video = false;
 };
 
@@ -82,6 +82,7 @@ ServoRequest configure(const ServoOptions& o) {
   request.settle_s = o.settle_s;
   request.quiet = o.run.quiet;
   request.real_time = o.real_time;
+  request.show = o.show;
   if (o.run.frames && !scene.is_recorded()) fit_settling(request, scene.frame_count(), scene.camera.frame_rate_hz);
   return request;
 }
@@ -181,6 +182,7 @@ Command add_servo_command(CLI::App& program) {
                   "residual and margins against a sine target of frequencies from LOW to HIGH, in Hz")
       ->type_name("LOW:HIGH");
   app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(finite(0, 1e4));
+  app->add_flag("--show", o.show, "the picture in a window while it runs (X11)");
   app->add_flag("--real-time", o.real_time,
                 "on a camera: real-time scheduling where allowed, memory locked, no pictures and no progress");
   app->add_flag("--no-video", o.no_video, "no short film of the run in the report");

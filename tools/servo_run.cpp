@@ -14,6 +14,7 @@
 #include "tools/album.hpp"
 #include "tools/capture/capture_summary.hpp"
 #include "tools/capture/live_timing.hpp"
+#include "tools/capture/outline.hpp"
 #include "tools/capture/real_time.hpp"
 #include "tools/command.hpp"
 #include "tools/interrupt.hpp"
@@ -59,6 +60,14 @@ ReportPicture overlay(const servo::LoopRecord& r, const servo::TruthSample& trut
   return picture;
 }
 
+// The picture has the tool in it already.
+void show(Window& window, const servo::LoopRecord& record) {
+  if (record.frame.grey.empty()) return;
+  std::vector<Window::Outline> outlines;
+  for (const auto* track : {&record.track, &record.marker_track}) add_outline(*track, outlines);
+  window.show(record.frame.grey, outlines);
+}
+
 }  // namespace
 
 void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_hz) {
@@ -100,6 +109,8 @@ ServoOutcome run_loop(ServoRequest request) {
   score.reserve(rows_ahead(expected));
   Album album(expected, [](double px) { return fmt::format("{:.1f} px from the goal", px); });
   std::optional<ShortVideo> video;
+  std::optional<Window> window;
+  if (request.show) window.emplace("heartservo: " + request.source, table->frames().size());
   ServoRunFacts facts;
   double looped_s = 0;  // in the loop itself: not what is made for people to look at
   {
@@ -117,6 +128,7 @@ ServoOutcome run_loop(ServoRequest request) {
       score.add(record, truth);
       append(outcome.frames, record, truth);
       if (live) live_timing.add(record, now_s());
+      if (window) show(*window, record);
       if (request.real_time) continue;
       const double off_px = record.frame.time_s < scene.settle_s ? NAN : (truth.tip_px - truth.goal_px).norm();
       if (record.frame.status == tracking::FrameStatus::OK)

@@ -18,6 +18,7 @@ struct ServoRequest {
   std::string label;     ///< of the progress bar
   double settle_s = -1;  ///< asked for on the command line; below 0: the scene's
   bool quiet = false;
+  bool show = false;       ///< the picture in a window while it runs
   bool real_time = false;  ///< see real_time.hpp; the pictures of the report are left out
   /// Called when nothing stands against the run any more. Returns where a short film of it goes; empty: none is made.
   std::function<std::filesystem::path()> before_run;

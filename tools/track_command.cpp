@@ -10,6 +10,7 @@
 #include "sim/table/table.hpp"
 #include "tools/artificial.hpp"
 #include "tools/capture/capture_summary.hpp"
+#include "tools/capture/outline.hpp"
 #include "tools/command.hpp"
 #include "tools/corner_truth.hpp"
 #include "tools/depth_rail.hpp"
@@ -43,6 +44,7 @@ struct TrackOptions {
   double square_mm = 0;
   std::string truth, points, point;
   std::string estimator, landmark;
+  bool show = false;
 };
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -241,6 +243,12 @@ std::optional<sim::Scene> depth_rail_of(const TrackOptions& o) {
   return scene;
 }
 
+void show(Window& window, const tracking::Frame& frame, const std::vector<TrackLane>& lanes) {
+  std::vector<Window::Outline> outlines;
+  for (const auto& lane : lanes) add_outline(lane.track(), outlines);
+  window.show(frame.grey, outlines);
+}
+
 int run_track(TrackOptions o) {
   if (o.run.list) return list_trackers();
   if (const auto scene = depth_rail_of(o)) return run_depth_rail(o.run, *scene);
@@ -270,6 +278,8 @@ int run_track(TrackOptions o) {
   }
   const TruthSource& source = sources.front();
 
+  std::optional<Window> window;
+  if (o.show) window.emplace("heartservo: " + o.run.source, frames.size());
   RunFolder folder(run_path(o.run, "track"));
   const std::size_t expected = frames.frame_count().value_or(0);
   TrackAlbum album(expected, source.kind, frame);
@@ -288,6 +298,7 @@ int run_track(TrackOptions o) {
       if (regions > 1) known = source.at(frame);
       with_truth += known.corners.has_value() || known.point.allFinite();
       album.look_at(frame, lanes, known);
+      if (window) show(*window, frame, lanes);
       progress.update(++count);
     } while (!(interrupted = interrupt.requested()) && frames.next(frame));
   }
@@ -346,6 +357,7 @@ Command add_track_command(CLI::App& program) {
       ->type_name("FILE");
   app->add_option("--point", o.point, "which of them; default: the one inside the region nearest to its centre")
       ->type_name("NAME");
+  app->add_flag("--show", o.show, "the picture in a window while it runs (X11)");
   app->add_flag("--list", o.run.list, "list the trackers and exit");
   app->footer(
       "Examples:\n  heartservo track frames/ --roi 150,130,60,60\n"

@@ -42,6 +42,14 @@ TEST_F(Capture, RefusesWithOneLine) {
   EXPECT_FALSE(fs::exists(folder_ / "runs"));
 }
 
+TEST_F(Capture, NoWindowWithoutADisplay) {
+  const char* display = std::getenv("DISPLAY");
+  if (display != nullptr && *display != '\0') GTEST_SKIP() << "there is a display";
+  sequence("frames", 3);
+  expect_refused(2, {"track", "frames", "--show"}, {"--show: there is no display"});
+  expect_refused(2, {"servo", "frames", "--roi", "50,40,50,50", "--show"}, {"--show: there is no display"});
+}
+
 TEST_F(Capture, ARecordingIsASource) {
   fs::create_directories(folder_ / "recorded");
   {
