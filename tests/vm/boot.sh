@@ -71,7 +71,7 @@ timeout --kill-after=10 "$seconds" qemu-system-x86_64 -M q35 -accel tcg,thread=m
   -nodefaults -no-user-config -display none -serial stdio -no-reboot \
   -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap \
   -kernel "$folder/boot/vmlinuz-$version" -initrd "$work/initrd" \
-  -append "console=ttyS0 quiet panic=-1 mitigations=off" </dev/null | tr -d '\r' | tee "$work/log" || status=$?
+  -append "console=ttyS0 quiet panic=-1 mitigations=off" </dev/null | sed -u 's/\r//' | tee "$work/log" || status=$?
 
 [[ $status -eq 0 ]] || { echo "FAILED: the virtual machine did not end within $seconds s"; exit 1; }
 grep -q '^GUEST-ENDED 0' "$work/log" || { echo "FAILED: the script in the guest did not end well"; exit 1; }

@@ -2,9 +2,14 @@
 # $HEARTSERVO is the program, $VM this folder's parent, $CHECK recording_check, $MADE what the host made for the run.
 
 export LC_ALL=C
-CHECK=$(dirname "$HEARTSERVO")/tests/vm/recording_check
-MADE=$(dirname "$HEARTSERVO")/tests/vm/made
+BUILT=$(dirname "$HEARTSERVO")/tests/vm
+CHECK=$BUILT/recording_check
+MADE=$BUILT/made
 cd /tmp
+mkfifo server.fifo
+"$BUILT/fork_server" server.fifo &
+HEARTSERVO=$VM/guest/heartservo
+timeout 120 "$HEARTSERVO" --version || echo "FAIL the program does not start"
 
 # check NAME SECONDS COMMAND...: it must end with 0 in time
 check() {
@@ -12,8 +17,8 @@ check() {
   shift 2
   timeout --kill-after=5 "$limit" "$@" >/tmp/out 2>/tmp/err
   code=$?
-  if [ $code -eq 0 ]; then echo "PASS $name: $(tail -1 /tmp/out | cut -c1-160)"; else
-    echo "FAIL $name: ended with $code: $(tail -3 /tmp/err /tmp/out | tr '\n' ' ' | cut -c1-600)"
+  if [ $code -eq 0 ]; then echo "PASS $name: $(tail -n 1 /tmp/out | cut -c1-160)"; else
+    echo "FAIL $name: ended with $code: $(cat /tmp/out /tmp/err | tail -n 4 | tr '\n' ' ' | cut -c1-600)"
   fi
   return $code
 }
@@ -22,7 +27,7 @@ check() {
 refused() {
   local name=$1 wanted=$2 text=$3 code
   shift 3
-  timeout --kill-after=5 60 "$@" >/tmp/out 2>/tmp/err
+  timeout --kill-after=5 90 "$@" >/tmp/out 2>/tmp/err
   code=$?
   if [ $code -eq "$wanted" ] && [ "$(wc -l </tmp/err)" -eq 1 ] && grep -qF -e "$text" /tmp/err; then
     echo "PASS $name: $(cut -c1-200 /tmp/err)"

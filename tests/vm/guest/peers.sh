@@ -2,7 +2,7 @@
 #   cmake --build --preset release --target peer_capture
 #   tests/vm/boot.sh tests/vm/guest/peers.sh build/release/heartservo 400 vivid
 . "$VM/guest/common.sh"
-peer=$(dirname "$HEARTSERVO")/tests/vm/peer_capture
+peer=$BUILT/peer_capture
 
 webcam() { vivid node_types=0x1 num_inputs=1 input_types=0x0; timeout 10 v4l2-ctl -d /dev/video0 -v width=320,height=180 >/dev/null; }
 hdmi() { vivid node_types=0x1 num_inputs=1 input_types=0x3; timeout 10 v4l2-ctl -d /dev/video0 --set-dv-bt-timings index=0 >/dev/null; }

@@ -1,6 +1,6 @@
 # The kernel's uvcvideo on a USB camera made of software: YUYV, MJPEG, broken frames, unplug and replug.
 . "$VM/guest/common.sh"
-usb=$(dirname "$HEARTSERVO")/tests/vm/usb_camera
+usb=$BUILT/usb_camera
 
 modprobe vhci-hcd || echo "FAIL vhci-hcd"
 modprobe uvcvideo nodrop=1 || echo "FAIL uvcvideo"

@@ -1,14 +1,14 @@
 # Every format, input and option of capture on vivid, and what it refuses.
 . "$VM/guest/common.sh"
 
-check "no device, list" 20 "$HEARTSERVO" capture --list
+check "no device, list" 60 "$HEARTSERVO" capture --list
 says "no device, list says so" /tmp/out "no video device"
 refused "no device, capture" 4 "/dev/video9: cannot be opened" "$HEARTSERVO" capture /dev/video9
 
 vivid node_types=0x1 num_inputs=3 input_types=0x38  # webcam, S-Video, HDMI
-check "list" 30 "$HEARTSERVO" capture --list
+check "list" 60 "$HEARTSERVO" capture --list
 says "list shows inputs and formats" /tmp/out "vivid" "input 0  Webcam" "input 1  S-Video" "input 2  HDMI" "YUYV" "NV12" "GREY" "at .* Hz"
-check "list as JSON" 30 "$HEARTSERVO" capture --list --json
+check "list as JSON" 60 "$HEARTSERVO" capture --list --json
 says "JSON" /tmp/out '"devices"' '"decoded_by": "heartservo"'
 
 control test_pattern=7  # red
@@ -19,7 +19,7 @@ for format in YUYV UYVY NV12 YU12 RGB3 BGR3; do
 done
 control test_pattern=6  # white
 check "GREY is captured" 60 "$HEARTSERVO" capture /dev/video0,format=GREY,size=320x180,frozen-s=0 --frames 5 --out GREY
-check "GREY is white" 30 "$CHECK" colour GREY 255 255 255 22
+check "GREY is white" 60 "$CHECK" colour GREY 255 255 255 22
 control test_pattern=0
 control osd_text_mode=0
 check "FFV1" 60 "$HEARTSERVO" capture /dev/video0,size=320x180 --frames 20 --out FFV1
