@@ -1,7 +1,7 @@
-// fork_server FIFO: the program itself, loaded once. To load it costs seconds in an emulated machine, more than most of what
-// the tests ask it for, so that each run is a fork of this process. Every line of FIFO names a folder with the file `args`: the
-// working folder, then the arguments, one a line. The run's stdout, stderr, process id and exit code go to the files out, err,
-// pid and code there.
+// fork_server FIFO: the program itself, and recording_check, loaded once. To load them costs seconds in an emulated machine,
+// more than most of what the tests ask of them, so that each run is a fork of this process. Every line of FIFO names a folder
+// with the file `args`: the working folder, the program's name, then its arguments, one a line. The run's stdout, stderr,
+// process id and exit code go to the files out, err, pid and code there.
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -14,7 +14,8 @@
 #include <string>
 #include <vector>
 
-int heartservo_main(int argc, char** argv);  // tools/main.cpp
+int heartservo_main(int argc, char** argv);       // tools/main.cpp
+int recording_check_main(int argc, char** argv);  // recording_check.cpp
 
 namespace {
 
@@ -26,7 +27,7 @@ void write_file(const std::string& file, int number) {
 [[noreturn]] void run(const std::string& folder) {
   std::ifstream in(folder + "/args");
   std::string cwd;
-  std::vector<std::string> words{"heartservo"};
+  std::vector<std::string> words;
   std::getline(in, cwd);
   for (std::string word; std::getline(in, word);) words.push_back(word);
   for (const auto& [name, stream] : {std::pair{"/out", STDOUT_FILENO}, std::pair{"/err", STDERR_FILENO}}) {
@@ -34,11 +35,12 @@ void write_file(const std::string& file, int number) {
     ::dup2(fd, stream);
     ::close(fd);
   }
-  if (::chdir(cwd.c_str()) != 0) std::exit(127);
+  if (::chdir(cwd.c_str()) != 0 || words.empty()) std::exit(127);
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  std::exit(heartservo_main(static_cast<int>(words.size()), argv.data()));
+  const auto program = words[0] == "recording_check" ? recording_check_main : heartservo_main;
+  std::exit(program(static_cast<int>(words.size()), argv.data()));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // A plugin of libv4l2 that makes a camera of any file that begins with "BAYERCAM": 320x240, 50 Hz, in the raw Bayer
-// pattern (BGGR) that only libv4l2 converts. Its blue, green and red pixels are 40, 90 and 160. Buffers lie in the file.
+// pattern (BGGR) that only libv4l2 converts. Its blue, green and red pixels are 60, 90 and 160 in the mean, with waves that
+// move by 0.5 px a frame to the right; "BAYERCAM still" stands still. Buffers lie in the file.
 #include <fcntl.h>
 #include <libv4l-plugin.h>
 #include <linux/videodev2.h>
@@ -9,6 +10,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <deque>
@@ -27,7 +29,7 @@ int refuse(int error) {
 }
 
 struct Camera {
-  bool streaming = false;
+  bool streaming = false, still = false;
   double due_s = 0;
   std::uint32_t sequence = 0, count = 0;
   std::uint8_t* memory = nullptr;
@@ -50,25 +52,43 @@ struct Camera {
     memory = static_cast<std::uint8_t*>(start);
     return 0;
   }
+  void paint(std::uint8_t* pixel) const {
+    const double shift = still ? 0 : 0.5 * sequence;
+    double across[WIDTH], slowly[WIDTH], down[HEIGHT];
+    for (std::uint32_t u = 0; u < WIDTH; ++u) {
+      const double at = u - shift;  // no whole number of one wave is one of the other: no place looks like another
+      across[u] = std::sin(at / 6);
+      slowly[u] = 20 * std::sin(at * at / 3000);
+    }
+    for (std::uint32_t v = 0; v < HEIGHT; ++v) down[v] = 25 * std::cos(v / 7.0);
+    for (std::uint32_t v = 0; v < HEIGHT; ++v)
+      for (std::uint32_t u = 0; u < WIDTH; ++u) {
+        const int base = v % 2 == u % 2 ? (v % 2 ? 160 : 60) : 90;
+        *pixel++ = static_cast<std::uint8_t>(base + across[u] * down[v] + slowly[u]);
+      }
+  }
   int dequeue(v4l2_buffer& buffer) {
     if (!streaming || queued.empty()) return refuse(EINVAL);
     if (now_s() < due_s) {
       ::usleep(500);
       return refuse(EAGAIN);
     }
+    if (now_s() - due_s > 0.5) {  // as a driver without free buffers
+      const auto dropped = static_cast<std::uint32_t>((now_s() - due_s) / PERIOD_s);
+      sequence += dropped;
+      due_s += dropped * PERIOD_s;
+    }
+    const double stamp = due_s;
     due_s += PERIOD_s;
     buffer.index = queued.front();
     queued.pop_front();
-    std::uint8_t* pixel = memory + HEADER + buffer.index * STRIDE;
-    for (std::uint32_t v = 0; v < HEIGHT; ++v)
-      for (std::uint32_t u = 0; u < WIDTH; ++u) *pixel++ = v % 2 == u % 2 ? (v % 2 ? 160 : 40) : 90;
+    paint(memory + HEADER + buffer.index * STRIDE);
     buffer.bytesused = buffer.length = BYTES;
     buffer.sequence = sequence++;
     buffer.flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
     buffer.field = V4L2_FIELD_NONE;
-    const double now = now_s();
-    buffer.timestamp.tv_sec = static_cast<time_t>(now);
-    buffer.timestamp.tv_usec = static_cast<suseconds_t>(1e6 * (now - static_cast<double>(buffer.timestamp.tv_sec)));
+    buffer.timestamp.tv_sec = static_cast<time_t>(stamp);
+    buffer.timestamp.tv_usec = static_cast<suseconds_t>(1e6 * (stamp - static_cast<double>(buffer.timestamp.tv_sec)));
     return 0;
   }
 };
@@ -126,10 +146,13 @@ int answer(Camera& camera, int fd, unsigned long request, void* argument) {
 
 void* begin(int fd) {
   struct stat file {};
-  char name[8] = {};
-  const bool ours = ::fstat(fd, &file) == 0 && S_ISREG(file.st_mode) && ::pread(fd, name, sizeof name, 0) == sizeof name &&
-                    std::string_view(name, sizeof name) == "BAYERCAM";
-  return ours ? new Camera : nullptr;
+  char text[14] = {};
+  if (::fstat(fd, &file) != 0 || !S_ISREG(file.st_mode) || ::pread(fd, text, sizeof text, 0) < 8) return nullptr;
+  const std::string_view name(text, sizeof text);
+  if (name.substr(0, 8) != "BAYERCAM") return nullptr;
+  auto* camera = new Camera;
+  camera->still = name == "BAYERCAM still";
+  return camera;
 }
 void end(void* camera) { delete static_cast<Camera*>(camera); }
 int request(void* camera, int fd, unsigned long what, void* argument) {

@@ -45,7 +45,9 @@ TEST(VispGrabber, ReadsWhatADiskGrabberReads) {
       ASSERT_EQ(frame.status, FrameStatus::OK) << frame.note;
       EXPECT_EQ(frame.time_s, 0.02 * i);
       EXPECT_EQ(frame.sequence, static_cast<std::uint64_t>(i));
-      if (colour) EXPECT_EQ(cv::norm(frame.colour, picture(i), cv::NORM_INF), 0) << i;
+      if (colour) {
+        EXPECT_EQ(cv::norm(frame.colour, picture(i), cv::NORM_INF), 0) << i;
+      }
       kept.push_back(frame.grey);
     }
     EXPECT_GT(cv::norm(kept[0], kept[4], cv::NORM_INF), 0) << "a frame stays what it was";

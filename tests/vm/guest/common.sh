@@ -3,12 +3,11 @@
 
 export LC_ALL=C
 BUILT=$(dirname "$HEARTSERVO")/tests/vm
-CHECK=$BUILT/recording_check
 MADE=$BUILT/made
 cd /tmp
 mkfifo server.fifo
 "$BUILT/fork_server" server.fifo &
-HEARTSERVO=$VM/guest/heartservo
+HEARTSERVO=$VM/guest/heartservo CHECK=$VM/guest/recording_check
 timeout 120 "$HEARTSERVO" --version || echo "FAIL the program does not start"
 
 # check NAME SECONDS COMMAND...: it must end with 0 in time

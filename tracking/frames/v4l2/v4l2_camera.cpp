@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -22,7 +23,7 @@ constexpr double FIRST_PICTURE_s = 5;  // a camera may need a second for its lig
 constexpr double PATIENCE_s = 0.1;     // of next(): at least this, or
 constexpr double PATIENCE_PERIODS = 2.5;
 constexpr double QUEUE_s = 2;  // of frames that wait to be asked for
-constexpr double UNKNOWN_RATE_HZ = 25;
+constexpr int RATE_FRAMES = 10;  // that the rate is measured on where the device does not say it
 
 std::string wanted_text(const CameraOptions& o) {
   return fmt::format("{}{}{}{}", o.format.empty() ? "any format" : o.format,
@@ -81,7 +82,7 @@ class Camera final : public V4l2Camera {
   cv::Size size() const override { return core_.size(); }
   double frame_rate_hz() const override {
     const double rate = core_.granted().rate_hz;
-    return rate > 0 ? rate : options_.rate_hz > 0 ? options_.rate_hz : UNKNOWN_RATE_HZ;
+    return rate > 0 ? rate : measured_hz_;
   }
   std::optional<std::size_t> frame_count() const override { return std::nullopt; }
   std::string description() const override { return options_.device; }
@@ -115,7 +116,24 @@ class Camera final : public V4l2Camera {
     }
     stamps_ = fmt::format("{}, {}", frame.capture->clock_is_monotonic ? "monotonic clock" : "a clock of its own",
                           frame.capture->start_of_exposure ? "start of exposure" : "end of frame");
-    queue_.push_back(std::move(frame));
+    queue_.push_back(frame);
+    if (core_.granted().rate_hz <= 0) measure_rate();
+  }
+
+  // The frames that it takes are the first of those that next() gives, or older than what a loop wants.
+  void measure_rate() {
+    const double begin = core_.now_s();
+    Frame frame;
+    for (int i = 0; i < RATE_FRAMES && core_.now_s() - begin < FIRST_PICTURE_s;) {
+      if (!core_.step(frame)) continue;
+      ++i;
+      if (!options_.every_frame) queue_.clear();
+      queue_.push_back(frame);
+    }
+    const double rate = core_.report().measured_rate_hz;
+    measured_hz_ = rate > 5 ? std::round(rate) : rate;
+    if (!(measured_hz_ > 0))
+      throw DeviceError(fmt::format("{}: too few frames came within {} s to tell their rate", options_.device, FIRST_PICTURE_s));
   }
 
   void run() {
@@ -144,7 +162,7 @@ class Camera final : public V4l2Camera {
   CaptureCore core_;
   std::string stamps_;
   std::size_t most_queued_ = 1;
-  double patience_s_ = PATIENCE_s;
+  double patience_s_ = PATIENCE_s, measured_hz_ = 0;
   double last_s_ = -1e300;  // of the consumer
   std::uint64_t last_sequence_ = 0;
   mutable std::mutex mutex_;  // guards the queue and what is counted beside it

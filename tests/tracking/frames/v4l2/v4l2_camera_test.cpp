@@ -44,7 +44,8 @@ TEST_F(V4l2CameraTest, ASlowConsumerGetsTheNewestFrame) {
     }
     last = frame.sequence;
     skipped += frame.capture->skipped;
-    std::this_thread::sleep_for(std::chrono::milliseconds(35));
+    const double begin = driver.now_s();
+    while (driver.now_s() < begin + 0.035) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   EXPECT_GT(skipped, 10u);
   EXPECT_GE(camera->report().skipped, skipped);
