@@ -8,7 +8,9 @@
 #include <filesystem>
 
 #include "tools/report/report.hpp"
+#include "tools/report/stored_pictures.hpp"
 #include "tools/run_folder.hpp"
+#include "tools/shipped.hpp"
 #include "tracking/frames/v4l2/camera_options.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_reader.hpp"
@@ -121,7 +123,7 @@ bool is_scene(const std::string& source) {
 
 sim::Scene scene_for(const RunOptions& run, const RecordedOptions& recorded) {
   if (run.source.empty()) throw ConfigError("SOURCE is missing: give a scene such as scenes/pig_2007.yaml, or frames");
-  sim::Scene scene = is_scene(run.source) ? sim::load_scene(run.source) : recorded_scene(run.source);
+  sim::Scene scene = is_scene(run.source) ? sim::load_scene(shipped(run.source)) : recorded_scene(run.source);
   if (run.seed) scene.seed = *run.seed;
   if (!recorded.roi.empty()) scene.recording.roi = recorded.roi;
   if (!recorded.camera.empty()) scene.camera.calibration = absolute(recorded.camera);
@@ -166,6 +168,7 @@ void finish_run(RunFolder& folder, const Report& report, const RunOptions& optio
   const std::string summary = report.summary.dump(2) + "\n";
   folder.write("config.yaml", report.config_yaml);
   folder.write("summary.json", summary);
+  write_pictures(folder.file(""), report.pictures);
   write_report(report, folder.file("report.html"));
   folder.finish();
   if (options.json)

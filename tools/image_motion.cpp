@@ -38,7 +38,8 @@ Eigen::Vector2d ImageMotion::add(const cv::Mat& grey) {
     squares_.assign(sums_.size(), 0);
     displacement_ = cv::Mat::zeros(around_.size(), CV_32FC2);
   } else {
-    flow_->calc(first_, grey(around_), displacement_);  // what it holds from the picture before is where the search starts
+    grey(around_).copyTo(now_);
+    flow_->calc(first_, now_, displacement_);  // what it holds from the picture before is where the search starts
   }
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   std::size_t i = 0;

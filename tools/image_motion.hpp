@@ -28,7 +28,7 @@ class ImageMotion {
  private:
   cv::Rect region_, around_;
   cv::Ptr<cv::DISOpticalFlow> flow_;
-  cv::Mat first_, displacement_;
+  cv::Mat first_, now_, displacement_;
   std::vector<Eigen::Vector2d> sums_;
   std::vector<double> squares_;
   std::size_t count_ = 0;

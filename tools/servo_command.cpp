@@ -93,7 +93,9 @@ int finish(const ServoOptions& o, RunFolder& folder, ServoOutcome& outcome, cons
   outcome.frames.write_csv(folder.file("frames.csv"));
   if (!outcome.stop_reason.empty()) tail(outcome.frames, kFlight_s).write_csv(folder.file("flight.csv"));
   const TimeTable plotted = with_motion(outcome.frames);
-  Report report = servo_report(outcome.summary, plotted, outcome.pictures, config_text(outcome.scene, "servo"));
+  const TimeTable spectrum = servo_spectrum(plotted, outcome.summary);
+  Report report =
+      servo_report(outcome.summary, plotted, spectrum, outcome.pictures, config_text(outcome.scene, "servo"));
   if (outcome.summary.contains("capture")) {
     report.tables.push_back(capture_table(outcome.summary["capture"]));
     report.tables.push_back(event_table(outcome.summary["capture"]));

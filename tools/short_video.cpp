@@ -1,7 +1,11 @@
 #include "tools/short_video.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <optional>
@@ -15,8 +19,31 @@ namespace heartservo::tools {
 
 namespace {
 
-constexpr double kPictures_hz = 25, kLength_s = 5;
-constexpr int kPanel_px = 320;  // widest; a page with this video stays near a megabyte
+constexpr double kPictures_hz = 25, kLength_s = 4;
+constexpr int kPanel_px = 256;  // widest; a page with this video stays near a megabyte
+
+// While it lives, stderr writes nowhere: OpenCV prints that WebM knows no tag for VP8, which is no fault of anybody's.
+class MutedStderr {
+ public:
+  MutedStderr() : kept_(::dup(STDERR_FILENO)) {
+    std::fflush(stderr);
+    if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {
+      ::dup2(nowhere, STDERR_FILENO);
+      ::close(nowhere);
+    }
+  }
+  ~MutedStderr() {
+    std::fflush(stderr);
+    if (kept_ < 0) return;
+    ::dup2(kept_, STDERR_FILENO);
+    ::close(kept_);
+  }
+  MutedStderr(const MutedStderr&) = delete;
+  MutedStderr& operator=(const MutedStderr&) = delete;
+
+ private:
+  int kept_;
+};
 
 }  // namespace
 
@@ -64,6 +91,7 @@ void ShortVideo::add(const tracking::Frame& frame, const cv::Mat& drawn, const t
     if (track.state == tracking::TrackState::LOST) return;
     p.raw.emplace(track.corners);
     const cv::Size size(2 * p.panel.width, p.panel.height);
+    const MutedStderr muted;
     if (!p.writer.open(p.file.string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc('V', 'P', '8', '0'), p.rate_hz, size))
       throw ConfigError(p.file.string() + ": the video cannot be written; check space and permissions");
     p.both.create(size, CV_8UC3);

@@ -17,7 +17,7 @@ namespace heartservo::tools {
 class ShortVideo {
  public:
   /// Written to `file` (WebM, VP8: every browser plays it) from the first frame at or after `from_s` on in which
-  /// the region is seen, at most 25 pictures a second for 5 s. `region`: that of the tracker; `size`: of the pictures; px.
+  /// the region is seen, at most 25 pictures a second for 4 s. `region`: that of the tracker; `size`: of the pictures; px.
   ShortVideo(const std::filesystem::path& file, double from_s, double frame_rate_hz, const tracking::Quad& region,
              cv::Size size);
   ~ShortVideo();

@@ -14,7 +14,8 @@
 #include <string>
 #include <vector>
 
-int heartservo_main(int argc, char** argv);       // tools/main.cpp
+#include "tools/program.hpp"
+
 int recording_check_main(int argc, char** argv);  // recording_check.cpp
 
 namespace {
@@ -39,8 +40,8 @@ void write_file(const std::string& file, int number) {
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  const auto program = words[0] == "recording_check" ? recording_check_main : heartservo_main;
-  std::exit(program(static_cast<int>(words.size()), argv.data()));
+  if (words[0] == "recording_check") std::exit(recording_check_main(static_cast<int>(words.size()), argv.data()));
+  std::exit(heartservo::tools::run_program({words.begin() + 1, words.end()}));
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ std::string video(const ReportVideo& video) {
 
 std::string table(const ReportTable& table) {
   std::string html =
-      fmt::format("<div{}><h2>{}</h2>\n", table.header.size() > 5 ? " class=\"wide\"" : "", escaped(table.title));
+      fmt::format("<div{}><h2>{}</h2>\n", table.wide || table.header.size() > 5 ? " class=\"wide\"" : "", escaped(table.title));
   if (!table.note.empty()) html += fmt::format("<p class=\"note\">{}</p>\n", escaped(table.note));
   html += "<div class=\"scroll\"><table>\n";
   // in a comparison a column is numeric when all its cells look like numbers

@@ -30,6 +30,7 @@ constexpr double kLikelyPerspective = 1.4;  // a 10 mm region 45 mm away, tilted
 constexpr double kLikelyAnisotropy = 2;     // tilted by 60 degrees
 
 constexpr std::array<double, 4> kSearchTurns_rad{-0.26, 0.26, -0.52, 0.52};
+constexpr double kSearchScale = 1.15;
 
 Eigen::Matrix3d rotation(double angle_rad) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -228,7 +229,7 @@ PlanarTracker::Candidate PlanarTracker::reacquire(const cv::Mat& grey) {
 }
 
 // Correlates the template, as the last believed alignment and the reference show it, with a coarse level of the pyramid
-// and aligns from the best places. After a loss it may have turned meanwhile.
+// and aligns from the best places. After a loss it may have turned or come nearer meanwhile.
 PlanarTracker::Candidate PlanarTracker::search(const Quad& around, double radius_px, int candidates, bool turned) {
   const int level = search_level(side_px_, pyramid_.levels());
   struct Start {
@@ -253,6 +254,12 @@ PlanarTracker::Candidate PlanarTracker::search(const Quad& around, double radius
   };
   look_for(last_);
   look_for(reference_);
+  for (int i = 0; turned && i < 2; ++i) {  // nearer or further, by as much as a heart moves in half a beat
+    Alignment view = last_;
+    const double scale = i == 0 ? kSearchScale : 1 / kSearchScale;
+    view.G_plane_patch *= Eigen::Vector3d(scale, scale, 1).asDiagonal();
+    look_for(view);
+  }
   for (int i = 0; turned && i < 4; ++i) {
     Alignment view = reference_;
     view.G_plane_patch *= rotation(kSearchTurns_rad[static_cast<std::size_t>(i)]);
