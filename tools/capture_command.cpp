@@ -65,7 +65,8 @@ Outcome record(const CaptureOptions& o, tracking::v4l2::V4l2Camera& camera, trac
   const std::uint64_t most = o.run.frames ? static_cast<std::uint64_t>(*o.run.frames) : UINT64_MAX;
   const bool endless = !o.run.frames && o.seconds <= 0;
   const Interrupt interrupt;
-  Progress progress("capture " + stem_of(camera.description()), o.run.frames ? static_cast<std::size_t>(most) : 0, o.run.quiet);
+  Progress progress("capture " + stem_of(camera.description()), o.run.frames ? static_cast<std::size_t>(most) : 0,
+                    o.run.quiet);
   const double begin = frame.time_s;
   const auto keep = [&] {
     if (frame.grey.empty()) return false;  // of another size; an event says so
@@ -102,14 +103,16 @@ Report report_of(const json& summary, const TimeTable& table, const CaptureOptio
   Report report;
   report.title = "capture " + summary["device"].get<std::string>();
   const json& recorded = summary["recorded"];
-  report.headline = fmt::format("{} frames recorded, {} dropped.", recorded["frames"].get<int>(), recorded["dropped"].get<int>());
+  report.headline =
+      fmt::format("{} frames recorded, {} dropped.", recorded["frames"].get<int>(), recorded["dropped"].get<int>());
   report.headline_number = fmt::format("{:.2f}", summary["measured"]["rate_hz"].get<double>());
   report.headline_unit = "Hz measured";
   if (recorded["stopped"].is_string()) report.notices.push_back(recorded["stopped"].get<std::string>());
   if (recorded["failure"].is_string()) report.notices.push_back(recorded["failure"].get<std::string>());
   if (table.rows() > 1)
-    report.plots = {{"Interval between frames", "ms", {{"interval", "interval_s"}}, 1e3, "", nullptr},
-                    {"Age of a frame when it was ready", "ms", {{"age", "age_s"}}, 1e3, "From its time stamp.", nullptr}};
+    report.plots = {
+        {"Interval between frames", "ms", {{"interval", "interval_s"}}, 1e3, "", nullptr},
+        {"Age of a frame when it was ready", "ms", {{"age", "age_s"}}, 1e3, "From its time stamp.", nullptr}};
   report.tables = {capture_table(summary), event_table(summary)};
   report.table = &table;
   report.summary = summary;
@@ -130,17 +133,20 @@ TimeTable plotted(const std::filesystem::path& rows) {
 int run_capture(const CaptureOptions& o) {
   if (o.run.list) return list_devices(o);
   if (o.run.source.empty())
-    throw ConfigError("DEVICE is missing: give for instance /dev/video0; 'heartservo capture --list' shows what there is");
+    throw ConfigError(
+        "DEVICE is missing: give for instance /dev/video0; 'heartservo capture --list' shows what there is");
   auto options = tracking::v4l2::parse_camera(o.run.source);
   if (o.probe) return probe_device(o, options);
   options.every_frame = true;
   const auto camera = tracking::v4l2::open_v4l2_camera(options, !o.grey);
-  RunFolder folder(o.run.out.empty() ? default_run_path("capture", stem_of(options.device)) : std::filesystem::path(o.run.out));
+  RunFolder folder(o.run.out.empty() ? default_run_path("capture", stem_of(options.device))
+                                     : std::filesystem::path(o.run.out));
   tracking::Frame first;
   if (!camera->wait_for(first, 5)) throw DeviceError(options.device + ": no frame came");
   const bool colour = !o.grey && !first.colour.empty();
   const auto home = folder.file("frames.csv").parent_path();
-  Recorder recorder(home, o.png ? write_pngs(home) : write_ffv1(home, camera->size(), colour, camera->frame_rate_hz()), {});
+  Recorder recorder(home, o.png ? write_pngs(home) : write_ffv1(home, camera->size(), colour, camera->frame_rate_hz()),
+                    {});
   const Outcome outcome = record(o, *camera, first, colour, recorder);
 
   json summary = json_of(camera->report());
@@ -175,17 +181,19 @@ Command add_capture_command(CLI::App& program) {
   app->add_flag("--list", o.run.list, "list devices, inputs, formats, sizes and rates, and exit");
   app->add_flag("--probe", o.probe, "measure rate, jitter, gaps and age in every format, show the controls, and exit");
   app->add_option("--out", o.run.out, "folder of the recording (default: runs/capture-NAME-DATE)")->type_name("DIR");
-  app->add_option("--frames", o.run.frames, "number of frames (default: until Ctrl-C)")->check(CLI::Range(1, 2000000000));
+  app->add_option("--frames", o.run.frames, "number of frames (default: until Ctrl-C)")
+      ->check(CLI::Range(1, 2000000000));
   app->add_option("--seconds", o.seconds, "length of the recording, or of the probe in each format (2)")
       ->check(finite(0.1, 1e6));
   app->add_flag("--png", o.png, "a folder of PNGs instead of FFV1 in Matroska; both are without loss");
   app->add_flag("--grey", o.grey, "only the luma that trackers see");
   app->add_flag("--json", o.run.json, "print the summary, the list or the probe as JSON on stdout and nothing else");
   app->add_flag("--quiet", o.run.quiet, "no progress and no table");
-  app->footer("Examples:\n  heartservo capture --list\n"
-              "  heartservo capture --probe DEVICE\n"
-              "  heartservo capture DEVICE,input=HDMI,crop=round --out OPERATION --seconds 60\n\n" +
-              tracking::v4l2::camera_option_help());
+  app->footer(
+      "Examples:\n  heartservo capture --list\n"
+      "  heartservo capture --probe DEVICE\n"
+      "  heartservo capture DEVICE,input=HDMI,crop=round --out OPERATION --seconds 60\n\n" +
+      tracking::v4l2::camera_option_help());
   return {app, [options] { return run_capture(*options); }};
 }
 

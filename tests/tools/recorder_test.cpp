@@ -35,8 +35,15 @@ Frame frame_of(int i, bool colour) {
   frame.time_s = 0.02 * i + (i > 5 ? 0.013 : 0);  // no even rate
   frame.sequence = static_cast<std::uint64_t>(i > 5 ? i + 1 : i);
   if (i == 3) frame.status = FrameStatus::NOT_LIVE;
-  frame.capture = tracking::CaptureStamp{1000.25 + i, frame.time_s + 0.004, frame.time_s + 0.006, true, i != 4,
-                                         static_cast<std::uint32_t>(70 + i), 0x12000, i == 6 ? 1u : 0u, 2};
+  frame.capture = tracking::CaptureStamp{1000.25 + i,
+                                         frame.time_s + 0.004,
+                                         frame.time_s + 0.006,
+                                         true,
+                                         i != 4,
+                                         static_cast<std::uint32_t>(70 + i),
+                                         0x12000,
+                                         i == 6 ? 1u : 0u,
+                                         2};
   return frame;
 }
 
@@ -46,7 +53,8 @@ TEST_P(Recording, IsReadAgainBitForBitWithItsTimeStamps) {
   const auto [png, colour] = GetParam();
   const TemporaryFolder folder;
   {
-    Recorder recorder(folder.path(), png ? write_pngs(folder.path()) : write_ffv1(folder.path(), {W, H}, colour, 50), {});
+    Recorder recorder(folder.path(), png ? write_pngs(folder.path()) : write_ffv1(folder.path(), {W, H}, colour, 50),
+                      {});
     for (int i = 0; i < 12; ++i) EXPECT_TRUE(recorder.offer(frame_of(i, colour)));
     recorder.finish();
     EXPECT_EQ(recorder.written(), 12u);
@@ -79,7 +87,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Recording,
                          testing::Values(std::pair{false, false}, std::pair{false, true}, std::pair{true, false},
                                          std::pair{true, true}),
                          [](const auto& kind) {
-                           return std::string(kind.param.first ? "Png" : "Ffv1") + (kind.param.second ? "Colour" : "Grey");
+                           return std::string(kind.param.first ? "Png" : "Ffv1") +
+                                  (kind.param.second ? "Colour" : "Grey");
                          });
 
 TEST(Recorder, AFullDiskEndsItWithWhatWasWrittenIntact) {
@@ -150,10 +159,15 @@ TEST(Recording, WrongOnesAreRefused) {
   EXPECT_FALSE(tracking::is_recording(folder.path()));
   std::filesystem::create_directories(folder / "pictures");
   write_text(folder / "frames.csv", tracking::recorded_header());
-  EXPECT_NE(message_of<InputError>([&] { tracking::open_source(folder.path(), 0); }).find("has no frame"), std::string::npos);
+  EXPECT_NE(message_of<InputError>([&] { tracking::open_source(folder.path(), 0); }).find("has no frame"),
+            std::string::npos);
   Frame a = frame_of(1, false), b = frame_of(0, false);
-  write_text(folder / "frames.csv", tracking::recorded_header() + tracking::recorded_row(a) + tracking::recorded_row(b));
-  EXPECT_NE(message_of<InputError>([&] { tracking::open_source(folder.path(), 0); }).find("frames.csv:3: time_s does not increase"), std::string::npos);
+  write_text(folder / "frames.csv",
+             tracking::recorded_header() + tracking::recorded_row(a) + tracking::recorded_row(b));
+  EXPECT_NE(message_of<InputError>([&] {
+              tracking::open_source(folder.path(), 0);
+            }).find("frames.csv:3: time_s does not increase"),
+            std::string::npos);
 }
 
 }  // namespace

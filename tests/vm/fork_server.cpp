@@ -1,7 +1,7 @@
-// fork_server FIFO: the program itself, and recording_check, loaded once. To load them costs seconds in an emulated machine,
-// more than most of what the tests ask of them, so that each run is a fork of this process. Every line of FIFO names a folder
-// with the file `args`: the working folder, the program's name, then its arguments, one a line. The run's stdout, stderr,
-// process id and exit code go to the files out, err, pid and code there.
+// fork_server FIFO: the program itself, and recording_check, loaded once. To load them costs seconds in an emulated
+// machine, more than most of what the tests ask of them, so that each run is a fork of this process. Every line of FIFO
+// names a folder with the file `args`: the working folder, the program's name, then its arguments, one a line. The
+// run's stdout, stderr, process id and exit code go to the files out, err, pid and code there.
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>

@@ -1,5 +1,5 @@
-// peer_capture visp|opencv DEVICE SECONDS: reads frames as vpV4l2Grabber or cv::VideoCapture does, for docs/capture.md, and
-// says what a program sees: how many frames, how long the longest call took, errors with their text.
+// peer_capture visp|opencv DEVICE SECONDS: reads frames as vpV4l2Grabber or cv::VideoCapture does, for docs/capture.md,
+// and says what a program sees: how many frames, how long the longest call took, errors with their text.
 #include <visp3/core/vpException.h>
 #include <visp3/core/vpImage.h>
 #include <visp3/sensor/vpV4l2Grabber.h>

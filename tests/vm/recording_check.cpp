@@ -5,7 +5,8 @@
 //   recording_check jpegs SOURCE FOLDER WIDTH HEIGHT COUNT  writes colour JPEGs, for usb_camera to send
 //   recording_check frames RECORDING FILE WIDTH HEIGHT LEAST   every recorded picture is one of FILE, bit for bit, they
 //                                                          come in its order, and LEAST different ones are there
-//   recording_check track LIVE.csv FILES.csv               every place tracked live is one that was tracked in the files
+//   recording_check track LIVE.csv FILES.csv               every place tracked live is one that was tracked in the
+//   files
 #include <fmt/format.h>
 
 #include <cmath>
@@ -79,7 +80,8 @@ int jpegs(const std::vector<std::string>& a) {
     if (bgr.empty()) cv::cvtColor(frame.grey, bgr, cv::COLOR_GRAY2BGR);
     const cv::Rect part(0, 0, std::min(size.width, bgr.cols), std::min(size.height, bgr.rows));
     bgr(part).copyTo(whole(part));
-    if (!cv::imwrite(fmt::format("{}/{:03}.jpg", a[1], count), whole, {cv::IMWRITE_JPEG_QUALITY, 95})) fail("nothing written");
+    if (!cv::imwrite(fmt::format("{}/{:03}.jpg", a[1], count), whole, {cv::IMWRITE_JPEG_QUALITY, 95}))
+      fail("nothing written");
   }
   fmt::print("{}\n", count);
   return count > 0 ? 0 : 1;
@@ -108,8 +110,8 @@ int frames(const std::vector<std::string>& a) {
     last = found->second;
     seen.insert(last);
   }
-  fmt::print("{} frames recorded, {} of {} different ones sent are among them, {} are none of them, {} out of order\n", count,
-             seen.size(), sent.size(), foreign, back);
+  fmt::print("{} frames recorded, {} of {} different ones sent are among them, {} are none of them, {} out of order\n",
+             count, seen.size(), sent.size(), foreign, back);
   return foreign == 0 && back == 0 && seen.size() >= std::stoul(a[4]) ? 0 : 1;
 }
 
@@ -146,8 +148,8 @@ int track(const std::vector<std::string>& a) {
     }
     if (close > best_close) best_close = close, worst = largest;
   }
-  fmt::print("{} of {} places tracked live are within 0.15 px of the way in the files; the farthest {:.2f} px\n", best_close,
-             live.size(), worst);
+  fmt::print("{} of {} places tracked live are within 0.15 px of the way in the files; the farthest {:.2f} px\n",
+             best_close, live.size(), worst);
   return best_close >= 0.97 * static_cast<double>(live.size()) && live.size() > 20 ? 0 : 1;
 }
 
@@ -156,7 +158,11 @@ int track(const std::vector<std::string>& a) {
 int main(int argc, char** argv) {
   const std::vector<std::string> all(argv + 1, argv + argc);
   const std::map<std::string, std::pair<std::size_t, int (*)(const std::vector<std::string>&)>> commands{
-      {"colour", {5, colour}}, {"raw", {5, raw}}, {"jpegs", {5, jpegs}}, {"frames", {5, frames}}, {"track", {2, track}}};
+      {"colour", {5, colour}},
+      {"raw", {5, raw}},
+      {"jpegs", {5, jpegs}},
+      {"frames", {5, frames}},
+      {"track", {2, track}}};
   const auto command = all.empty() ? commands.end() : commands.find(all[0]);
   if (command == commands.end() || all.size() != command->second.first + 1) fail("wrong usage; see the source");
   try {

@@ -19,8 +19,7 @@ json json_of(const tracking::CaptureReport& r) {
   const auto known = [](double value) { return value > 0 ? json(value) : json(); };
   const auto given = [](const std::string& text) { return text.empty() ? json() : json(text); };
   json events = json::array();
-  for (const auto& e : r.events)
-    events.push_back({{"time_s", e.time_s}, {"event", e.name}, {"detail", e.detail}});
+  for (const auto& e : r.events) events.push_back({{"time_s", e.time_s}, {"event", e.name}, {"detail", e.detail}});
   return {{"device", r.device},
           {"card", r.card},
           {"driver", r.driver},
@@ -83,7 +82,8 @@ std::string capture_text(const json& c) {
   const auto& events = c["events"];
   if (events.empty()) return text + "events      none\n";
   std::vector<std::string> counts;
-  for (const auto& [name, count] : c["event_counts"].items()) counts.push_back(fmt::format("{} {}", name, count.get<int>()));
+  for (const auto& [name, count] : c["event_counts"].items())
+    counts.push_back(fmt::format("{} {}", name, count.get<int>()));
   text += fmt::format("events      {}\n", fmt::join(counts, ", "));
   for (std::size_t i = events.size() > SHOWN_EVENTS ? events.size() - SHOWN_EVENTS : 0; i < events.size(); ++i)
     text += fmt::format("  {:>9.3f} s  {:<20}{}\n", events[i]["time_s"].get<double>(),

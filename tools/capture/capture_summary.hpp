@@ -7,8 +7,8 @@
 
 namespace heartservo::tools {
 
-/// What a camera was asked for, granted and measured, and what happened to it: {device, wanted, granted, measured, frames,
-/// event_counts, events}. Part of summary.json of every run on a live camera.
+/// What a camera was asked for, granted and measured, and what happened to it: {device, wanted, granted, measured,
+/// frames, event_counts, events}. Part of summary.json of every run on a live camera.
 nlohmann::json json_of(const tracking::CaptureReport& report);
 
 /// Wanted, granted and measured, side by side; and the events.

@@ -18,8 +18,8 @@ using namespace tracking::v4l2;
 json json_of(cv::Size size) { return {size.width, size.height}; }
 
 json json_of(const DeviceOffer& offer) {
-  json j{{"device", offer.device}, {"card", offer.card}, {"driver", offer.driver}, {"bus", offer.bus},
-         {"inputs", json::array()}, {"formats", json::array()}};
+  json j{{"device", offer.device}, {"card", offer.card},      {"driver", offer.driver},
+         {"bus", offer.bus},       {"inputs", json::array()}, {"formats", json::array()}};
   for (const auto& input : offer.inputs)
     j["inputs"].push_back({{"index", input.index},
                            {"name", input.name},
@@ -28,7 +28,9 @@ json json_of(const DeviceOffer& offer) {
   for (const auto& format : offer.formats) {
     json sizes = json::array();
     for (const auto& size : format.sizes)
-      sizes.push_back({{"low", json_of(size.low)}, {"high", json_of(size.high)}, {"rates_hz", size.rates},
+      sizes.push_back({{"low", json_of(size.low)},
+                       {"high", json_of(size.high)},
+                       {"rates_hz", size.rates},
                        {"rates_are_range", size.rates_are_range}});
     j["formats"].push_back({{"name", format.name},
                             {"description", format.description},

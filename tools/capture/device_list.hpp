@@ -4,7 +4,8 @@
 
 namespace heartservo::tools {
 
-/// The video devices of this machine with inputs, formats, sizes and rates; those that cannot be opened with the reason.
+/// The video devices of this machine with inputs, formats, sizes and rates; those that cannot be opened with the
+/// reason.
 nlohmann::json device_list();
 
 /// The same for people: "no video device" where there is none.

@@ -59,10 +59,11 @@ std::string live_text(const json& live) {
   row("age at use", live["age_ms"]);
   row("glass to command", live["glass_to_command_ms"]);
   const json& real_time = live["real_time"];
-  return text + fmt::format("nominal period {:.2f} ms, {} overruns, {} frames skipped for newer ones; scheduling {}, memory {}\n",
-                            live["nominal_period_ms"].get<double>(), live["overruns"].get<int>(),
-                            live["skipped_frames"].get<int>(), real_time["scheduling"].get<std::string>(),
-                            real_time["memory"].get<std::string>());
+  return text +
+         fmt::format(
+             "nominal period {:.2f} ms, {} overruns, {} frames skipped for newer ones; scheduling {}, memory {}\n",
+             live["nominal_period_ms"].get<double>(), live["overruns"].get<int>(), live["skipped_frames"].get<int>(),
+             real_time["scheduling"].get<std::string>(), real_time["memory"].get<std::string>());
 }
 
 }  // namespace heartservo::tools

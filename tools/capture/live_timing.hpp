@@ -18,8 +18,8 @@ class LiveTiming {
   /// `now_s`: when the step was done, on any clock.
   void add(const servo::LoopRecord& record, double now_s);
 
-  /// {age_ms, glass_to_command_ms: {p50, p99, max}; period_ms: {min, p50, p99, max}; overruns: steps whose computing took
-  /// longer than a frame; skipped_frames}
+  /// {age_ms, glass_to_command_ms: {p50, p99, max}; period_ms: {min, p50, p99, max}; overruns: steps whose computing
+  /// took longer than a frame; skipped_frames}
   nlohmann::json summary() const;
 
  private:

@@ -68,6 +68,8 @@ std::unique_ptr<PictureWriter> write_ffv1(const std::filesystem::path& folder, c
   return std::make_unique<Ffv1>(folder, size, colour, rate_hz);
 }
 
-std::unique_ptr<PictureWriter> write_pngs(const std::filesystem::path& folder) { return std::make_unique<Pngs>(folder); }
+std::unique_ptr<PictureWriter> write_pngs(const std::filesystem::path& folder) {
+  return std::make_unique<Pngs>(folder);
+}
 
 }  // namespace heartservo::tools

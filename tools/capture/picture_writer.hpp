@@ -16,7 +16,8 @@ class PictureWriter {
 };
 
 /// FFV1 in Matroska: `folder`/video.mkv. A file that was cut off by a crash can be read up to its last second.
-std::unique_ptr<PictureWriter> write_ffv1(const std::filesystem::path& folder, cv::Size size, bool colour, double rate_hz);
+std::unique_ptr<PictureWriter> write_ffv1(const std::filesystem::path& folder, cv::Size size, bool colour,
+                                          double rate_hz);
 
 /// `folder`/pictures/000000.png, ...
 std::unique_ptr<PictureWriter> write_pngs(const std::filesystem::path& folder);

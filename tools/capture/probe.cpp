@@ -59,8 +59,11 @@ json measured(CameraOptions options, const std::string& format, double seconds) 
 
 json probe(const CameraOptions& options, double seconds) {
   const Device device = looked_at(options.device);
-  json j{{"command", "capture"}, {"device", options.device}, {"card", device.offer.card},
-         {"formats", json::array()}, {"controls", json::array()}};
+  json j{{"command", "capture"},
+         {"device", options.device},
+         {"card", device.offer.card},
+         {"formats", json::array()},
+         {"controls", json::array()}};
   for (const auto& name : format_names()) {
     if (!options.format.empty() && options.format != name) continue;
     for (const auto& format : device.offer.formats)
@@ -71,15 +74,20 @@ json probe(const CameraOptions& options, double seconds) {
   }
   if (j["formats"].empty()) j["formats"].push_back(measured(options, options.format, seconds));
   for (const auto& c : device.controls)
-    j["controls"].push_back({{"name", c.name}, {"low", c.low}, {"high", c.high}, {"step", c.step},
-                             {"standard", c.standard}, {"value", c.value}, {"menu", c.menu}});
+    j["controls"].push_back({{"name", c.name},
+                             {"low", c.low},
+                             {"high", c.high},
+                             {"step", c.step},
+                             {"standard", c.standard},
+                             {"value", c.value},
+                             {"menu", c.menu}});
   return j;
 }
 
 std::string probe_text(const json& j) {
-  std::string text = fmt::format("{}: {}\n\n{:<8}{:<28}{:>8}{:>10}{:>9}{:>6}{:>8}{:>8}\n", j["device"].get<std::string>(),
-                                 j["card"].get<std::string>(), "format", "granted", "Hz", "jitter ms", "missing", "bad",
-                                 "age ms", "decode");
+  std::string text = fmt::format("{}: {}\n\n{:<8}{:<28}{:>8}{:>10}{:>9}{:>6}{:>8}{:>8}\n",
+                                 j["device"].get<std::string>(), j["card"].get<std::string>(), "format", "granted",
+                                 "Hz", "jitter ms", "missing", "bad", "age ms", "decode");
   for (const json& f : j["formats"]) {
     if (f.contains("problem")) {
       text += fmt::format("{:<8}{}\n", f["format"].get<std::string>(), f["problem"].get<std::string>());

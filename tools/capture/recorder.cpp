@@ -83,8 +83,8 @@ bool Recorder::write(const tracking::Frame& frame) {
   std::string why;
   const std::uint64_t least = options_.least_free_bytes + 4 * bytes_of(picture_of(frame)), left = options_.free_bytes();
   if (left < least) {
-    why = fmt::format("the disk of {} is full ({} MB left, {} MB are needed to end the files)", folder_.string(), left >> 20,
-                      least >> 20);
+    why = fmt::format("the disk of {} is full ({} MB left, {} MB are needed to end the files)", folder_.string(),
+                      left >> 20, least >> 20);
   } else {
     try {
       pictures_->write(picture_of(frame));

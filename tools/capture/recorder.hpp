@@ -17,7 +17,7 @@
 namespace heartservo::tools {
 
 struct RecorderOptions {
-  std::size_t most_queued_bytes = std::size_t(256) << 20;  ///< of pictures that wait to be written
+  std::size_t most_queued_bytes = std::size_t(256) << 20;    ///< of pictures that wait to be written
   std::uint64_t least_free_bytes = std::uint64_t(16) << 20;  ///< kept free, to end the files; and four pictures more
   /// Free bytes on the disk; empty: asked of the file system.
   std::function<std::uint64_t()> free_bytes;
@@ -26,20 +26,21 @@ struct RecorderOptions {
 class Recorder {
  public:
   /// `folder` gets frames.csv beside what `pictures` writes. Throws ConfigError.
-  Recorder(const std::filesystem::path& folder, std::unique_ptr<PictureWriter> pictures, const RecorderOptions& options);
+  Recorder(const std::filesystem::path& folder, std::unique_ptr<PictureWriter> pictures,
+           const RecorderOptions& options);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Takes the frame to be written, its colour picture where it has one. Does not wait. False: the queue is full and the
-  /// frame is dropped, or the recording has stopped.
+  /// Takes the frame to be written, its colour picture where it has one. Does not wait. False: the queue is full and
+  /// the frame is dropped, or the recording has stopped.
   bool offer(const tracking::Frame& frame);
 
   /// Writes what waits and ends the files.
   void finish();
 
   std::uint64_t written() const;
-  std::uint64_t dropped() const;  ///< because the disk was too slow
+  std::uint64_t dropped() const;    ///< because the disk was too slow
   std::size_t most_queued() const;  ///< frames
   /// Why it stopped by itself: the disk is full, or a file cannot be written; "" while all is well. What was written
   /// until then is whole.

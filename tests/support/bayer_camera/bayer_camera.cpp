@@ -1,6 +1,6 @@
 // A plugin of libv4l2 that makes a camera of any file that begins with "BAYERCAM": 320x240, 50 Hz, in the raw Bayer
-// pattern (BGGR) that only libv4l2 converts. Its blue, green and red pixels are 60, 90 and 160 in the mean, with waves that
-// move by 0.5 px a frame to the right; "BAYERCAM still" stands still. Buffers lie in the file.
+// pattern (BGGR) that only libv4l2 converts. Its blue, green and red pixels are 60, 90 and 160 in the mean, with waves
+// that move by 0.5 px a frame to the right; "BAYERCAM still" stands still. Buffers lie in the file.
 #include <fcntl.h>
 #include <libv4l-plugin.h>
 #include <linux/videodev2.h>
@@ -18,7 +18,8 @@
 
 namespace {
 
-constexpr std::uint32_t WIDTH = 320, HEIGHT = 240, BYTES = WIDTH * HEIGHT, STRIDE = (BYTES + 4095) & ~4095u, HEADER = 4096;
+constexpr std::uint32_t WIDTH = 320, HEIGHT = 240, BYTES = WIDTH * HEIGHT, STRIDE = (BYTES + 4095) & ~4095u,
+                        HEADER = 4096;
 constexpr double PERIOD_s = 0.02;
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -128,7 +129,8 @@ int answer(Camera& camera, int fd, unsigned long request, void* argument) {
       pix.colorspace = V4L2_COLORSPACE_SRGB;
       return 0;
     }
-    case VIDIOC_REQBUFS: return camera.buffers(fd, *static_cast<v4l2_requestbuffers*>(argument));
+    case VIDIOC_REQBUFS:
+      return camera.buffers(fd, *static_cast<v4l2_requestbuffers*>(argument));
     case VIDIOC_QUERYBUF: {
       auto& b = *static_cast<v4l2_buffer*>(argument);
       if (b.index >= camera.count) return refuse(EINVAL);
@@ -136,11 +138,21 @@ int answer(Camera& camera, int fd, unsigned long request, void* argument) {
       b.m.offset = HEADER + b.index * STRIDE;
       return 0;
     }
-    case VIDIOC_QBUF: camera.queued.push_back(static_cast<v4l2_buffer*>(argument)->index); return 0;
-    case VIDIOC_DQBUF: return camera.dequeue(*static_cast<v4l2_buffer*>(argument));
-    case VIDIOC_STREAMON: camera.streaming = true; camera.due_s = now_s() + PERIOD_s; return 0;
-    case VIDIOC_STREAMOFF: camera.streaming = false; camera.queued.clear(); return 0;
-    default: return refuse(ENOTTY);
+    case VIDIOC_QBUF:
+      camera.queued.push_back(static_cast<v4l2_buffer*>(argument)->index);
+      return 0;
+    case VIDIOC_DQBUF:
+      return camera.dequeue(*static_cast<v4l2_buffer*>(argument));
+    case VIDIOC_STREAMON:
+      camera.streaming = true;
+      camera.due_s = now_s() + PERIOD_s;
+      return 0;
+    case VIDIOC_STREAMOFF:
+      camera.streaming = false;
+      camera.queued.clear();
+      return 0;
+    default:
+      return refuse(ENOTTY);
   }
 }
 
@@ -161,6 +173,5 @@ int request(void* camera, int fd, unsigned long what, void* argument) {
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) const libv4l_dev_ops libv4l2_plugin = {begin,   end,     request, nullptr,
-                                                                                        nullptr, nullptr, nullptr, nullptr,
-                                                                                        nullptr, nullptr, nullptr, nullptr};
+extern "C" __attribute__((visibility("default"))) const libv4l_dev_ops libv4l2_plugin = {
+    begin, end, request, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};

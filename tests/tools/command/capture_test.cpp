@@ -26,7 +26,8 @@ TEST_F(Capture, AListOfNoDevicesSaysSo) {
 }
 
 TEST_F(Capture, RefusesWithOneLine) {
-  expect_refused(4, {"capture", "/dev/video97"}, {"/dev/video97: cannot be opened: No such file or directory", "--list"});
+  expect_refused(4, {"capture", "/dev/video97"},
+                 {"/dev/video97: cannot be opened: No such file or directory", "--list"});
   expect_refused(4, {"capture", "--probe", "v4l2:/dev/video97,size=640x480"}, {"/dev/video97"});
   expect_refused(4, {"track", "v4l2:/dev/video97"}, {"/dev/video97: cannot be opened"});
   expect_refused(4, {"servo", "v4l2:/dev/video97"}, {"/dev/video97: cannot be opened"});

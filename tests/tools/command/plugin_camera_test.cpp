@@ -1,5 +1,5 @@
-// A camera that only libv4l2 can convert, made by a plugin of it; the plugin's folder is mounted over libv4l2's own, in a
-// mount namespace of its own.
+// A camera that only libv4l2 can convert, made by a plugin of it; the plugin's folder is mounted over libv4l2's own, in
+// a mount namespace of its own.
 #include "tests/tools/command/command_fixture.hpp"
 #include "tracking/frames/frame.hpp"
 #include "tracking/frames/open_source.hpp"
@@ -51,7 +51,8 @@ TEST_F(PluginCamera, AFrozenPictureIsNamed) {
 }
 
 TEST_F(PluginCamera, ItsPicturesAreTracked) {
-  const auto json = json_of(with_plugin("track v4l2:camera,frames=every --frames 40 --roi 120,90,60,60 --json --out run"));
+  const auto json =
+      json_of(with_plugin("track v4l2:camera,frames=every --frames 40 --roi 120,90,60,60 --json --out run"));
   EXPECT_EQ(json["frames"], 40);
   EXPECT_EQ(json["capture"]["frames"]["queue_dropped"], 0);
   if (json["capture"]["frames"]["missing"] == 0) {  // a machine that is too busy loses frames
@@ -62,7 +63,8 @@ TEST_F(PluginCamera, ItsPicturesAreTracked) {
 }
 
 TEST_F(PluginCamera, TheLoopRunsOnItInRealTime) {
-  const Outcome o = with_plugin("servo v4l2:camera --frames 40 --settle-s 0 --roi 120,90,60,60 --real-time --json --out run");
+  const Outcome o =
+      with_plugin("servo v4l2:camera --frames 40 --settle-s 0 --roi 120,90,60,60 --real-time --json --out run");
   ASSERT_EQ(o.code, 0) << o.err;
   const auto json = json_of(o);
   EXPECT_EQ(json["frames"], 40);

@@ -61,10 +61,8 @@ inline Bytes frame_descriptor(int subtype) {
 
 inline Bytes configuration_descriptor() {
   // class-specific part of the control interface: header, camera terminal 1, output terminal 3
-  const Bytes terminals = Packer()
-                              .u8({18, 0x24, 2, 1, 1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0})
-                              .u8({9, 0x24, 3, 3, 1, 1, 0, 1, 0})
-                              .bytes;
+  const Bytes terminals =
+      Packer().u8({18, 0x24, 2, 1, 1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0}).u8({9, 0x24, 3, 3, 1, 1, 0, 1, 0}).bytes;
   const Bytes control = Packer()
                             .u8({13, 0x24, 1, 0, 1})
                             .u16(static_cast<std::uint32_t>(13 + terminals.size()))
@@ -87,16 +85,21 @@ inline Bytes configuration_descriptor() {
                            .append(formats)
                            .bytes;
   const Bytes body = Packer()
-                         .u8({8, 11, 0, 2, 0x0e, 3, 0, 0})         // the two interfaces belong together
-                         .u8({9, 4, 0, 0, 0, 0x0e, 1, 0, 0})       // 0: control
+                         .u8({8, 11, 0, 2, 0x0e, 3, 0, 0})    // the two interfaces belong together
+                         .u8({9, 4, 0, 0, 0, 0x0e, 1, 0, 0})  // 0: control
                          .append(control)
-                         .u8({9, 4, 1, 0, 1, 0x0e, 2, 0, 0})       // 1: stream
+                         .u8({9, 4, 1, 0, 1, 0x0e, 2, 0, 0})  // 1: stream
                          .append(stream)
-                         .u8({7, 5, 0x81, 2})                      // its bulk endpoint
+                         .u8({7, 5, 0x81, 2})  // its bulk endpoint
                          .u16(512)
                          .u8({0})
                          .bytes;
-  return Packer().u8({9, 2}).u16(static_cast<std::uint32_t>(9 + body.size())).u8({2, 1, 0, 0x80, 0xfa}).append(body).bytes;
+  return Packer()
+      .u8({9, 2})
+      .u16(static_cast<std::uint32_t>(9 + body.size()))
+      .u8({2, 1, 0, 0x80, 0xfa})
+      .append(body)
+      .bytes;
 }
 
 }  // namespace heartservo::test

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <csignal>
+#include <cstdio>
 #include <deque>
 #include <fstream>
 #include <iterator>
@@ -23,7 +23,8 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 
 class Camera {
  public:
-  Camera(std::vector<Bytes> jpegs, std::string fault, long at) : jpegs_(std::move(jpegs)), fault_(std::move(fault)), at_(at) {
+  Camera(std::vector<Bytes> jpegs, std::string fault, long at)
+      : jpegs_(std::move(jpegs)), fault_(std::move(fault)), at_(at) {
     probe_ = commit_ = Bytes(26);
     settle(probe_);
     settle(commit_);
@@ -43,7 +44,8 @@ class Camera {
  private:
   void take(const Transfer& t) {
     if (t.is_unlink) {
-      const auto found = std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& w) { return w.number == t.unlink; });
+      const auto found =
+          std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& w) { return w.number == t.unlink; });
       const bool was_there = found != waiting_.end();
       if (was_there) waiting_.erase(found);
       link_.answer_unlink(t, was_there);
@@ -67,16 +69,23 @@ class Camera {
     Bytes reply;
     bool known = true;
     if (type == 0x80 && request == 6) {
-      if (high == 1) reply = device_descriptor();
-      else if (high == 2) reply = configuration_descriptor();
-      else if (high == 3) reply = string_descriptor(low);
-      else known = false;
+      if (high == 1)
+        reply = device_descriptor();
+      else if (high == 2)
+        reply = configuration_descriptor();
+      else if (high == 3)
+        reply = string_descriptor(low);
+      else
+        known = false;
     } else if (type == 0x80 && request == 0) {
       reply = {0, 0};
     } else if (type == 0xa1 && index == 1 && (high == 1 || high == 2)) {
-      if (request == 0x85) reply = {26, 0};       // GET_LEN
-      else if (request == 0x86) reply = {3};      // GET_INFO
-      else reply = high == 1 ? probe_ : commit_;  // GET_CUR, MIN, MAX, DEF
+      if (request == 0x85)
+        reply = {26, 0};  // GET_LEN
+      else if (request == 0x86)
+        reply = {3};  // GET_INFO
+      else
+        reply = high == 1 ? probe_ : commit_;  // GET_CUR, MIN, MAX, DEF
     } else if (type == 0x21 && request == 1 && index == 1 && t.data.size() >= 26) {
       Bytes& to = high == 1 ? probe_ : commit_;
       to.assign(t.data.begin(), t.data.begin() + 26);

@@ -1,5 +1,6 @@
 #pragma once
-// The kernel's side of USB/IP: a device made of software is plugged into vhci-hcd by handing it one end of a socket pair.
+// The kernel's side of USB/IP: a device made of software is plugged into vhci-hcd by handing it one end of a socket
+// pair.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <poll.h>

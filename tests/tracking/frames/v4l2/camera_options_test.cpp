@@ -34,12 +34,14 @@ TEST(CameraOptions, AreReadFromTheSource) {
 }
 
 TEST(CameraOptions, WrongOnesAreRefused) {
-  for (const char* wrong : {"v4l2:", "/dev/video0,size", "/dev/video0,=3", "/dev/video0,size=12", "/dev/video0,size=ax3",
-                            "/dev/video0,format=H264", "/dev/video0,rate=0", "/dev/video0,rate=nan", "/dev/video0,crop=1:2:3",
-                            "/dev/video0,crop=-1:2:300:300", "/dev/video0,fields=weave", "/dev/video0,frames=some",
-                            "/dev/video0,input=", "/dev/video0,size=1e9x3", "/dev/video0,"})
+  for (const char* wrong :
+       {"v4l2:", "/dev/video0,size", "/dev/video0,=3", "/dev/video0,size=12", "/dev/video0,size=ax3",
+        "/dev/video0,format=H264", "/dev/video0,rate=0", "/dev/video0,rate=nan", "/dev/video0,crop=1:2:3",
+        "/dev/video0,crop=-1:2:300:300", "/dev/video0,fields=weave", "/dev/video0,frames=some",
+        "/dev/video0,input=", "/dev/video0,size=1e9x3", "/dev/video0,"})
     EXPECT_NE(message_of<ConfigError>([&] { parse_camera(wrong); }), "nothing was thrown") << wrong;
-  EXPECT_NE(message_of<ConfigError>([] { parse_camera("/dev/video0,size=12"); }).find("size=640x480"), std::string::npos);
+  EXPECT_NE(message_of<ConfigError>([] { parse_camera("/dev/video0,size=12"); }).find("size=640x480"),
+            std::string::npos);
 }
 
 TEST(CameraOptions, NamesOfFormatsAndEvents) {

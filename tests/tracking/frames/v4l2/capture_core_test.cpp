@@ -1,66 +1,9 @@
-// Every fault that real drivers were seen to show (docs/capture.md), on a scripted device: noticed, named, recovered.
-#include <gtest/gtest.h>
-
-#include "tests/tracking/frames/v4l2/fake_driver.hpp"
-#include "tracking/frames/v4l2/capture_core.hpp"
+// What comes, and the faults that do not stop it (docs/capture.md), on a scripted device: noticed and named.
+#include "tests/tracking/frames/v4l2/capture_core_fixture.hpp"
 #include "tracking/settings/errors.hpp"
 
 namespace heartservo::test {
 namespace {
-
-using namespace tracking;
-using namespace tracking::v4l2;
-
-class CaptureCoreTest : public testing::Test {
- protected:
-  CaptureCoreTest() { options.device = "/dev/video0"; }
-
-  /// Opens and runs until `end_s` on the driver's clock; keeps what was delivered.
-  void run_until(double end_s) {
-    if (!core) {
-      core.emplace(driver, options, false);
-      core->open();
-    }
-    Frame frame;
-    int steps = 0;
-    while (driver.now_s() < 1000 + end_s && !core->gave_up()) {
-      const double before = driver.now_s();
-      if (core->step(frame)) {
-        if (!frames.empty()) {
-          EXPECT_GT(frame.time_s, frames.back().time_s);
-        }
-        frames.push_back(frame);
-        arrivals.push_back(driver.now_s() - 1000);
-      }
-      EXPECT_LE(driver.now_s() - before, 0.3) << "a step has an end";
-      ASSERT_LT(++steps, 200000) << "the clock stands still";
-    }
-  }
-  std::uint64_t count(Event event) const { return core->events().count(event); }
-  std::string detail(Event event) const {
-    for (const auto& record : core->events().records())
-      if (record.event == event) return record.detail;
-    return "never happened";
-  }
-  double when(Event event) const {
-    for (const auto& record : core->events().records())
-      if (record.event == event) return record.time_s;
-    return NAN;
-  }
-  /// Seconds until the first good frame that arrived after `time_s`.
-  double back_after(double time_s) const {
-    for (std::size_t i = 0; i < frames.size(); ++i)
-      if (arrivals[i] > time_s && frames[i].status == FrameStatus::OK) return arrivals[i] - time_s;
-    return INFINITY;
-  }
-  std::size_t events() const { return core->events().records().size(); }
-
-  FakeDriver driver;
-  CameraOptions options;
-  std::optional<CaptureCore> core;
-  std::vector<Frame> frames;
-  std::vector<double> arrivals;
-};
 
 TEST_F(CaptureCoreTest, DeliversEveryFrameOfAHealthyCamera) {
   run_until(2);
@@ -128,16 +71,6 @@ TEST_F(CaptureCoreTest, ShortBufferIsNoPicture) {
   EXPECT_NE(detail(Event::BAD_PICTURE).find("1536 of 3072 bytes"), std::string::npos);
 }
 
-TEST_F(CaptureCoreTest, AllBuffersBrokenRestartsTheStream) {  // UVC bulk transfer error
-  driver.at(0.5, [](auto& d) { d.bad_buffers = 4; });
-  run_until(1.5);
-  EXPECT_EQ(count(Event::BAD_BUFFER), 4u);
-  EXPECT_EQ(count(Event::RESTARTED), 1u);
-  EXPECT_EQ(count(Event::RECOVERED), 1u);
-  EXPECT_EQ(driver.starts, 2);
-  EXPECT_LT(back_after(0.5), 0.2);
-}
-
 TEST_F(CaptureCoreTest, DroppedBuffersAreAGapInTheSequence) {
   driver.at(0.5, [](auto& d) { d.drop = 3; });
   run_until(1);
@@ -154,57 +87,10 @@ TEST_F(CaptureCoreTest, ASequenceThatWrapsIsNoFault) {
   EXPECT_EQ(frames.back().sequence, frames.size() - 1);
 }
 
-TEST_F(CaptureCoreTest, FatalErrorRestartsTheStream) {
-  driver.at(0.5, [](auto& d) { d.dead = true; });
-  run_until(1.5);
-  EXPECT_EQ(count(Event::STREAM_ERROR), 1u);
-  EXPECT_EQ(count(Event::RESTARTED), 1u);
-  EXPECT_EQ(count(Event::RECOVERED), 1u);
-  EXPECT_LT(back_after(0.5), 0.2);
-  EXPECT_EQ(driver.opens, 1);
-}
-
-TEST_F(CaptureCoreTest, ADisconnectedDeviceWhoseNodeStays) {
-  driver.at(0.5, [](auto& d) { d.plugged = false; });
-  driver.at(0.7, [](auto& d) { d.plugged = true; });
-  run_until(2);
-  EXPECT_EQ(count(Event::DISCONNECTED), 1u);
-  EXPECT_EQ(count(Event::UNPLUGGED), 0u);
-  EXPECT_EQ(count(Event::REOPENED), 1u);
-  EXPECT_EQ(count(Event::RECOVERED), 1u);
-  EXPECT_LT(back_after(0.7), 0.3);
-  EXPECT_EQ(driver.opens, 2);
-  EXPECT_EQ(core->fault(), "");
-}
-
-TEST_F(CaptureCoreTest, AnUnpluggedDeviceComesBackWithFullSetUp) {
-  options.controls = {{"gain_analogue", "20"}};
-  driver.at(0.5, [](auto& d) { d.plugged = d.node = false; });
-  driver.at(3.0, [](auto& d) { d.plugged = d.node = true, d.gain = 0; });
-  run_until(2);
-  EXPECT_EQ(count(Event::UNPLUGGED), 1u);
-  EXPECT_EQ(core->fault(), "the device is unplugged");
-  run_until(5);
-  EXPECT_EQ(count(Event::REOPENED), 1u);
-  EXPECT_LT(back_after(3.0), 2);
-  EXPECT_EQ(driver.gain, 20);
-  EXPECT_EQ(driver.mapped, 4);
-  EXPECT_NEAR(frames.back().time_s, 5, 0.1) << "time goes on over the outage";
-}
-
-TEST_F(CaptureCoreTest, ADeviceThatDoesNotComeBackEndsIt) {
-  options.give_up_s = 3;
-  driver.at(0.5, [](auto& d) { d.plugged = d.node = false; });
-  run_until(100);
-  EXPECT_TRUE(core->gave_up());
-  EXPECT_LT(driver.now_s() - 1000, 4);
-  EXPECT_EQ(count(Event::GAVE_UP), 1u);
-  EXPECT_NE(core->fault().find("did not come back within 3 s"), std::string::npos);
-}
-
 TEST_F(CaptureCoreTest, NoSignalNoLockOutOfRangeWhileFramesKeepFlowing) {
   driver.dv = true;
-  const std::pair<int, Event> faults[] = {{ENOLINK, Event::NO_SIGNAL}, {ENOLCK, Event::NO_LOCK}, {ERANGE, Event::OUT_OF_RANGE}};
+  const std::pair<int, Event> faults[] = {
+      {ENOLINK, Event::NO_SIGNAL}, {ENOLCK, Event::NO_LOCK}, {ERANGE, Event::OUT_OF_RANGE}};
   double time = 1;
   for (const auto& [error, event] : faults) {
     driver.at(time, [e = error](auto& d) { d.signal_error = e; });
@@ -231,36 +117,6 @@ TEST_F(CaptureCoreTest, AnInputWithoutSignalByItsStatus) {
   run_until(2);
   EXPECT_EQ(count(Event::NO_SIGNAL), 1u);
   EXPECT_EQ(count(Event::SIGNAL_BACK), 1u);
-}
-
-TEST_F(CaptureCoreTest, ASignalThatStopsFramesIsNamedAndComesBack) {
-  driver.dv = driver.broken_signal_stops = true;
-  driver.at(1, [](auto& d) { d.signal_error = ENOLINK; });
-  driver.at(4, [](auto& d) { d.signal_error = 0; });
-  run_until(6);
-  EXPECT_EQ(count(Event::NO_SIGNAL), 1u);
-  EXPECT_GE(count(Event::STARVED), 1u);
-  EXPECT_LT(back_after(4), 2);
-}
-
-TEST_F(CaptureCoreTest, AChangedResolutionIsSetUpAnew) {
-  driver.dv = true;
-  driver.at(1, [](auto& d) { d.signal_width = 80, d.signal_height = 60; });
-  driver.at(3, [](auto& d) { d.signal_width = 64, d.signal_height = 48; });
-  run_until(5);
-  EXPECT_EQ(count(Event::RESOLUTION_CHANGED), 2u);
-  EXPECT_EQ(count(Event::REOPENED), 2u);
-  EXPECT_EQ(driver.timings_set, 3);
-  bool other = false;
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    if (arrivals[i] > 2 && arrivals[i] < 3) {
-      other = true;
-      EXPECT_EQ(frames[i].status, FrameStatus::UNREADABLE);
-      EXPECT_NE(frames[i].note.find("80 x 60 px, the first one was 64 x 48"), std::string::npos);
-    }
-  EXPECT_TRUE(other);
-  EXPECT_LT(back_after(3), 2);
-  EXPECT_EQ(frames.back().status, FrameStatus::OK);
 }
 
 TEST_F(CaptureCoreTest, ASourceChangeEventIsActedOnAtOnce) {
@@ -292,36 +148,6 @@ TEST_F(CaptureCoreTest, AFrozenPictureIsFineWhereItIsExpected) {
   run_until(4);
   EXPECT_EQ(events(), 0u);
   EXPECT_EQ(frames.back().status, FrameStatus::OK);
-}
-
-TEST_F(CaptureCoreTest, AStreamThatStallsIsStartedAnewThenOpenedAnew) {  // UVC freeze: nothing but poll time-outs
-  driver.at(1, [](auto& d) { d.stalled = true; });
-  driver.at(6, [](auto& d) { d.stalled = false; });
-  run_until(9);
-  EXPECT_GE(count(Event::STARVED), 1u);
-  EXPECT_NEAR(when(Event::STARVED), 1.5, 0.15);
-  EXPECT_NE(detail(Event::STARVED).find("poll says that there is none"), std::string::npos);
-  EXPECT_GE(count(Event::RESTARTED), 2u);
-  EXPECT_GE(count(Event::REOPENED), 1u);
-  EXPECT_LT(back_after(6), 2);
-}
-
-TEST_F(CaptureCoreTest, StarvationWhilePollSaysThereAreFrames) {  // libv4l2 with 4:2:2 JPEG
-  driver.at(1, [](auto& d) { d.lying_poll = true; });
-  driver.at(3, [](auto& d) { d.lying_poll = false; });
-  run_until(5);
-  EXPECT_NEAR(when(Event::STARVED), 1.5, 0.15);
-  EXPECT_NE(detail(Event::STARVED).find("poll says that there is one"), std::string::npos);
-  EXPECT_LT(back_after(3), 2);
-  EXPECT_LT(driver.polls, 8000) << "it does not spin";
-}
-
-TEST_F(CaptureCoreTest, ADeviceThatNeverDeliversAgainEndsIt) {
-  options.give_up_s = 5;
-  driver.at(1, [](auto& d) { d.stalled = true; });
-  run_until(100);
-  EXPECT_TRUE(core->gave_up());
-  EXPECT_LT(driver.now_s() - 1000, 9);
 }
 
 TEST_F(CaptureCoreTest, ATimeJumpGoesOnByOurClock) {
@@ -402,22 +228,6 @@ TEST_F(CaptureCoreTest, AlternatingFieldsMakeWholePictures) {
   run_until(0.5);
   EXPECT_EQ(frames.back().grey.size(), cv::Size(64, 48));
   EXPECT_EQ(events(), 0u);
-}
-
-TEST_F(CaptureCoreTest, AManyFaultsStormEnds) {
-  options.controls = {{"gain_analogue", "20"}};
-  for (int i = 0; i < 20; ++i) {
-    driver.at(0.5 + i, [](auto& d) { d.dead = true; });
-    driver.at(0.6 + i, [](auto& d) { d.bad_buffers = 5; });
-    driver.at(0.7 + i, [](auto& d) { d.plugged = d.node = false; });
-    driver.at(0.9 + i, [](auto& d) { d.plugged = d.node = true, d.stamp_offset_s += 100; });
-    driver.at(1.2 + i, [](auto& d) { d.drop = 4; });
-  }
-  run_until(24);
-  EXPECT_EQ(frames.back().status, FrameStatus::OK);
-  EXPECT_EQ(core->fault(), "");
-  EXPECT_GT(frames.size(), 500u);
-  EXPECT_EQ(driver.mapped, 4) << "buffers of every stream before were given up";
 }
 
 }  // namespace

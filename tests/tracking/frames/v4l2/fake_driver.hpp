@@ -26,19 +26,19 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
   int width = 64, height = 48, line_padding = 0;
   double rate_hz = 50;
   std::uint32_t field = V4L2_FIELD_NONE;
-  bool dv = false;               ///< an HDMI input, else a webcam
+  bool dv = false;  ///< an HDMI input, else a webcam
   bool source_change_events = false;
-  bool real_time = false;        ///< waits really
+  bool real_time = false;  ///< waits really
   std::uint32_t first_sequence = 0;
   std::uint32_t stamp_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_EOF;
-  double stamp_offset_s = 0;     ///< added to every time stamp
+  double stamp_offset_s = 0;  ///< added to every time stamp
   std::int32_t exposure_100us = 0, gain = 10;
   int max_gain = 100;
   std::vector<std::uint8_t> payload;  ///< of a compressed format; else pictures are made
 
   // --- its state, for faults
   bool plugged = true, node = true, frozen_picture = false, stalled = false, dead = false, lying_poll = false;
-  int signal_error = 0;               ///< of QUERY_DV_TIMINGS
+  int signal_error = 0;  ///< of QUERY_DV_TIMINGS
   std::uint32_t input_status = 0;
   int signal_width = 64, signal_height = 48;
   double signal_rate_hz = 50;
@@ -92,9 +92,12 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
     events = 0;
     const double end = now_ + 1e-3 * timeout_ms;
     while (true) {
-      if (gone_) events = POLLERR | POLLHUP;
-      else if (dead) events = POLLERR;
-      else if (lying_poll || !filled_.empty()) events = POLLIN;
+      if (gone_)
+        events = POLLERR | POLLHUP;
+      else if (dead)
+        events = POLLERR;
+      else if (lying_poll || !filled_.empty())
+        events = POLLIN;
       if (event_pending_) events |= POLLPRI;
       if (events) return 1;
       if (now_ >= end) return 0;
@@ -151,10 +154,13 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
     buffer.bytesused = static_cast<std::uint32_t>(bytes());
     if (!frozen_picture) ++picture_;
     paint(memory_[buffer.index]);
-    if (bad_buffers > 0) --bad_buffers, buffer.flags |= V4L2_BUF_FLAG_ERROR, buffer.bytesused = 0, buffer.sequence = 0,
-                         buffer.timestamp = {};
-    else if (empty_buffers > 0) --empty_buffers, buffer.bytesused = 0;
-    else if (short_buffers > 0) --short_buffers, buffer.bytesused /= 2;
+    if (bad_buffers > 0)
+      --bad_buffers, buffer.flags |= V4L2_BUF_FLAG_ERROR, buffer.bytesused = 0, buffer.sequence = 0,
+                                                          buffer.timestamp = {};
+    else if (empty_buffers > 0)
+      --empty_buffers, buffer.bytesused = 0;
+    else if (short_buffers > 0)
+      --short_buffers, buffer.bytesused /= 2;
     filled_.push_back(buffer);
   }
 
@@ -162,9 +168,11 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
   std::size_t pixel_bytes() const {
     return fourcc == V4L2_PIX_FMT_RGB24 || fourcc == V4L2_PIX_FMT_BGR24 ? 3
            : fourcc == V4L2_PIX_FMT_YUYV || fourcc == V4L2_PIX_FMT_UYVY ? 2
-                                                                         : 1;
+                                                                        : 1;
   }
-  std::size_t line_bytes() const { return static_cast<std::size_t>(width) * pixel_bytes() + static_cast<std::size_t>(line_padding); }
+  std::size_t line_bytes() const {
+    return static_cast<std::size_t>(width) * pixel_bytes() + static_cast<std::size_t>(line_padding);
+  }
   std::size_t bytes() const {
     if (!payload.empty()) return payload.size();
     const std::size_t plane = line_bytes() * static_cast<std::size_t>(lines());
@@ -203,13 +211,16 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
         i.status = input_status;
         return 0;
       }
-      case VIDIOC_G_INPUT: return *static_cast<int*>(argument) = input_, 0;
-      case VIDIOC_S_INPUT: return input_ = *static_cast<int*>(argument), 0;
+      case VIDIOC_G_INPUT:
+        return *static_cast<int*>(argument) = input_, 0;
+      case VIDIOC_S_INPUT:
+        return input_ = *static_cast<int*>(argument), 0;
       case VIDIOC_QUERY_DV_TIMINGS:
         if (!dv) return -ENODATA;
         if (signal_error) return -signal_error;
         return *static_cast<v4l2_dv_timings*>(argument) = timings(), 0;
-      case VIDIOC_G_DV_TIMINGS: return dv ? (*static_cast<v4l2_dv_timings*>(argument) = timings(), 0) : -ENODATA;
+      case VIDIOC_G_DV_TIMINGS:
+        return dv ? (*static_cast<v4l2_dv_timings*>(argument) = timings(), 0) : -ENODATA;
       case VIDIOC_S_DV_TIMINGS: {
         const auto& bt = static_cast<v4l2_dv_timings*>(argument)->bt;
         width = static_cast<int>(bt.width), height = static_cast<int>(bt.height);
@@ -235,7 +246,8 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
       }
       case VIDIOC_G_PARM:
       case VIDIOC_S_PARM:
-        static_cast<v4l2_streamparm*>(argument)->parm.capture.timeperframe = {1000, static_cast<std::uint32_t>(1000 * rate_hz)};
+        static_cast<v4l2_streamparm*>(argument)->parm.capture.timeperframe = {
+            1000, static_cast<std::uint32_t>(1000 * rate_hz)};
         return 0;
       case VIDIOC_QUERYCTRL: {
         auto& q = *static_cast<v4l2_queryctrl*>(argument);
@@ -266,18 +278,21 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
       }
       case VIDIOC_QUERYBUF: {
         auto& b = *static_cast<v4l2_buffer*>(argument);
-        b.length = static_cast<std::uint32_t>(payload.empty() ? bytes() : std::max<std::size_t>(payload.size(), 1 << 16));
+        b.length =
+            static_cast<std::uint32_t>(payload.empty() ? bytes() : std::max<std::size_t>(payload.size(), 1 << 16));
         b.m.offset = b.index * 4096;
         return 0;
       }
-      case VIDIOC_QBUF: return queued_.push_back(static_cast<v4l2_buffer*>(argument)->index), 0;
+      case VIDIOC_QBUF:
+        return queued_.push_back(static_cast<v4l2_buffer*>(argument)->index), 0;
       case VIDIOC_STREAMON:
         if (stream_on_error) return -stream_on_error;
         if (!streaming_) sequence_ = first_sequence;
         streaming_ = true, dead = false, ++starts;
         due_ = now_ + 1 / rate_hz;
         return 0;
-      case VIDIOC_STREAMOFF: return streaming_ = false, 0;
+      case VIDIOC_STREAMOFF:
+        return streaming_ = false, 0;
       case VIDIOC_DQBUF: {
         if (dead) return -EIO;
         if (lying_poll || filled_.empty()) return -EAGAIN;
@@ -285,13 +300,15 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
         filled_.pop_front();
         return 0;
       }
-      case VIDIOC_SUBSCRIBE_EVENT: return source_change_events ? 0 : -EINVAL;
+      case VIDIOC_SUBSCRIBE_EVENT:
+        return source_change_events ? 0 : -EINVAL;
       case VIDIOC_DQEVENT:
         if (!event_pending_) return -ENOENT;
         event_pending_ = false;
         static_cast<v4l2_event*>(argument)->type = V4L2_EVENT_SOURCE_CHANGE;
         return 0;
-      default: return -ENOTTY;
+      default:
+        return -ENOTTY;
     }
   }
 

@@ -52,10 +52,14 @@ std::vector<std::uint8_t> buffer_of(const std::string& format, std::size_t paddi
   for (int v = 0; v < H; ++v) {
     for (int u = 0; u < W; ++u) {
       const std::uint8_t luminance = y.at<std::uint8_t>(v, u), chroma = u % 2 ? cr : cb;
-      if (format == "YUYV") bytes.insert(bytes.end(), {luminance, chroma});
-      else if (format == "UYVY") bytes.insert(bytes.end(), {chroma, luminance});
-      else if (format == "RGB3" || format == "BGR3") bytes.insert(bytes.end(), 3, luminance);
-      else bytes.push_back(luminance);
+      if (format == "YUYV")
+        bytes.insert(bytes.end(), {luminance, chroma});
+      else if (format == "UYVY")
+        bytes.insert(bytes.end(), {chroma, luminance});
+      else if (format == "RGB3" || format == "BGR3")
+        bytes.insert(bytes.end(), 3, luminance);
+      else
+        bytes.push_back(luminance);
     }
     pad(padding);
   }
@@ -72,7 +76,9 @@ class RawFormat : public testing::TestWithParam<std::string> {};
 
 TEST_P(RawFormat, GreyIsTheLumaExactlyAndColourIsRight) {
   const std::string format = GetParam();
-  const std::uint32_t bytes_a_pixel = format == "YUYV" || format == "UYVY" ? 2 : format == "RGB3" || format == "BGR3" ? 3 : 1;
+  const std::uint32_t bytes_a_pixel = format == "YUYV" || format == "UYVY"   ? 2
+                                      : format == "RGB3" || format == "BGR3" ? 3
+                                                                             : 1;
   for (const std::uint32_t padding : {0u, 32u}) {
     const auto bytes = buffer_of(format, padding, 90, 170);
     const auto d = decode(granted(format, W * bytes_a_pixel + padding), bytes);
@@ -107,7 +113,8 @@ std::vector<std::uint8_t> jpeg(cv::Size size, int sampling) {
   tjhandle handle = tjInitCompress();
   unsigned char* out = nullptr;
   unsigned long length = 0;
-  tjCompress2(handle, bgr.data, size.width, static_cast<int>(bgr.step), size.height, TJPF_BGR, &out, &length, sampling, 95, 0);
+  tjCompress2(handle, bgr.data, size.width, static_cast<int>(bgr.step), size.height, TJPF_BGR, &out, &length, sampling,
+              95, 0);
   std::vector<std::uint8_t> bytes(out, out + length);
   tjFree(out);
   tjDestroy(handle);
@@ -120,7 +127,9 @@ std::vector<std::uint8_t> without_huffman_tables(const std::vector<std::uint8_t>
   std::size_t i = 2;
   while (bytes[i + 1] != 0xda) {
     const std::size_t next = i + 2 + (std::size_t(bytes[i + 2]) << 8 | bytes[i + 3]);
-    if (bytes[i + 1] != 0xc4) result.insert(result.end(), bytes.begin() + static_cast<std::ptrdiff_t>(i), bytes.begin() + static_cast<std::ptrdiff_t>(next));
+    if (bytes[i + 1] != 0xc4)
+      result.insert(result.end(), bytes.begin() + static_cast<std::ptrdiff_t>(i),
+                    bytes.begin() + static_cast<std::ptrdiff_t>(next));
     i = next;
   }
   result.insert(result.end(), bytes.begin() + static_cast<std::ptrdiff_t>(i), bytes.end());
@@ -149,9 +158,12 @@ TEST(Jpeg, EverySamplingWithAndWithoutHuffmanTables) {
 
 TEST(Jpeg, DamagedOnesAreRefused) {
   auto bytes = jpeg({W, H}, TJSAMP_420);
-  EXPECT_NE(decode(granted("MJPG", 0), {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2)}).problem, "");
+  EXPECT_NE(decode(granted("MJPG", 0), {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2)})
+                .problem,
+            "");
   EXPECT_NE(decode(granted("MJPG", 0), {0, 1, 2, 3}).problem.find("is no JPEG"), std::string::npos);
-  EXPECT_NE(decode(granted("MJPG", 0), jpeg({32, 32}, TJSAMP_420)).problem.find("32 x 32 px instead of 64 x 48"), std::string::npos);
+  EXPECT_NE(decode(granted("MJPG", 0), jpeg({32, 32}, TJSAMP_420)).problem.find("32 x 32 px instead of 64 x 48"),
+            std::string::npos);
 }
 
 TEST(Fields, OneFieldIsShownInAllLines) {
@@ -207,8 +219,10 @@ TEST(RoundPicture, IsNotSeenWhereThereIsNone) {
   cv::Mat square(480, 640, CV_8UC1, cv::Scalar(5));
   square(cv::Rect(160, 80, 320, 320)).setTo(140);
   EXPECT_FALSE(round_picture(square));
-  EXPECT_NE(message_of<DeviceError>([&] { crop_of("round", square, "/dev/video0"); }).find("no bright disc"), std::string::npos);
-  EXPECT_NE(message_of<DeviceError>([&] { crop_of("600:0:100:100", square, "x"); }).find("not inside"), std::string::npos);
+  EXPECT_NE(message_of<DeviceError>([&] { crop_of("round", square, "/dev/video0"); }).find("no bright disc"),
+            std::string::npos);
+  EXPECT_NE(message_of<DeviceError>([&] { crop_of("600:0:100:100", square, "x"); }).find("not inside"),
+            std::string::npos);
   EXPECT_EQ(crop_of("16:8:100:90", square, "x"), cv::Rect(16, 8, 100, 90));
 }
 
