@@ -23,7 +23,7 @@ recording() {
 servoing() {
   local name=$1 source=$2 faults=$3 out=servo_$3
   shift 3
-  timeout --kill-after=5 120 "$HEARTSERVO" servo "v4l2:$source" --roi 100,60,60,60 --settle-s 0 --quiet --out $out >/tmp/out 2>/tmp/err &
+  timeout --kill-after=5 120 "$HEARTSERVO" servo "v4l2:$source" --roi 200,160,100,100 --settle-s 0 --quiet --out $out >/tmp/out 2>/tmp/err &
   local job=$!
   until_there $out.partial 40 || echo "FAIL $name: does not start: $(cat /tmp/err)"
   sleep 1
@@ -56,14 +56,16 @@ of_webcam=('"bad_buffer": ' '"sequence_gap": ' '"stream_error": ' '"restarted": 
            '"disconnected": 1' '"reopened": 1' '"recovered": ')
 of_hdmi=('"no_signal": 1' '"no_lock": 1' '"out_of_range": 1' '"signal_back": 3' '"resolution_changed": 2' 'from 640x480p 59'
          'to 720x480p 59' '"recovered": ')
-fresh_webcam() { vivid node_types=0x1 num_inputs=1 input_types=0x0; }
+# coloured squares have corners to follow
+fresh_webcam() { vivid node_types=0x1 num_inputs=1 input_types=0x0; control test_pattern=4; }
 fresh_hdmi() {
   vivid node_types=0x1 num_inputs=1 input_types=0x3
   timeout 10 v4l2-ctl -d /dev/video0 --set-dv-bt-timings index=0 >/dev/null
+  control test_pattern=4
 }
 
 fresh_webcam; recording "webcam" $webcam webcam_faults "${of_webcam[@]}"
-fresh_webcam; servoing "webcam" $webcam webcam_faults "${of_webcam[@]}"
+fresh_webcam; servoing "webcam" /dev/video0,size=640x480 webcam_faults "${of_webcam[@]}"
 fresh_hdmi; recording "HDMI" $hdmi hdmi_faults "${of_hdmi[@]}"
 fresh_hdmi; servoing "HDMI" $hdmi hdmi_faults "${of_hdmi[@]}"
 fresh_webcam; recording "a count that wraps" $webcam sequence_wrap '"stream_error": ' '"recovered": '
