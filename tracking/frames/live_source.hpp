@@ -19,8 +19,8 @@ struct CaptureReport {
   std::string device, card, driver, input;
   std::string wanted, granted, timings, crop;
   std::vector<std::string> controls;
-  std::string stamps;         ///< clock, and start of exposure or end of frame
-  double granted_rate_hz = 0;  ///< 0: it does not say
+  std::string stamps;                          ///< clock, and start of exposure or end of frame
+  double granted_rate_hz = 0;                  ///< 0: it does not say
   double measured_rate_hz = 0, jitter_ms = 0;  ///< median rate; standard deviation of the interval between frames
   double transfer_ms = 0, decode_ms = 0;       ///< medians: from the time stamp to us; from bytes to picture
   std::uint64_t frames = 0, skipped = 0, missing = 0, bad = 0, queue_dropped = 0;

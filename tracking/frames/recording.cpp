@@ -50,7 +50,7 @@ std::vector<Frame> read_rows(const std::filesystem::path& file) {
     frame.status = value(2) == static_cast<double>(FrameStatus::NOT_LIVE) ? FrameStatus::NOT_LIVE : FrameStatus::OK;
     if (std::isnan(value(3))) continue;
     const auto count = [&](std::size_t i) { return static_cast<std::uint32_t>(value(i)); };
-    frame.capture = CaptureStamp{value(3), value(4), value(5), value(6) != 0, value(7) != 0,
+    frame.capture = CaptureStamp{value(3), value(4), value(5),  value(6) != 0, value(7) != 0,
                                  count(8), count(9), count(10), count(11)};
   }
   if (frames.empty()) throw InputError(file.string() + ": the recording has no frame");

@@ -26,8 +26,8 @@ std::string recorded_row(const Frame& frame);
 /// True for such a folder: frames.csv with capture columns, and pictures.
 bool is_recording(const std::filesystem::path& folder);
 
-/// Its frames with the time stamps, numbers and states that they were captured with. frame_rate_hz() is the median. Rows
-/// without a picture (a recording that was killed) and pictures without a row end it. Throws InputError.
+/// Its frames with the time stamps, numbers and states that they were captured with. frame_rate_hz() is the median.
+/// Rows without a picture (a recording that was killed) and pictures without a row end it. Throws InputError.
 std::unique_ptr<FrameSource> open_recording(const std::filesystem::path& folder);
 
 }  // namespace heartservo::tracking

@@ -73,7 +73,8 @@ class VispFrames final : public FrameSource {
           .copyTo(frame.grey);
       return;
     }
-    const cv::Mat rgba(static_cast<int>(colour_.getHeight()), static_cast<int>(colour_.getWidth()), CV_8UC4, colour_.bitmap);
+    const cv::Mat rgba(static_cast<int>(colour_.getHeight()), static_cast<int>(colour_.getWidth()), CV_8UC4,
+                       colour_.bitmap);
     cv::cvtColor(rgba, frame.colour, cv::COLOR_RGBA2BGR);
     cv::cvtColor(frame.colour, frame.grey, cv::COLOR_BGR2GRAY);
   }

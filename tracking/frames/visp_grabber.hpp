@@ -10,8 +10,8 @@ class vpFrameGrabber;
 namespace heartservo::tracking {
 
 struct VispGrabberOptions {
-  double frame_rate_hz = 25;   ///< nominal; ViSP's grabbers do not say
-  bool colour = false;         ///< acquire colour, and grey from it
+  double frame_rate_hz = 25;    ///< nominal; ViSP's grabbers do not say
+  bool colour = false;          ///< acquire colour, and grey from it
   std::size_t frame_count = 0;  ///< how many there are; 0: unknown
   /// True when there is no further frame, asked before each; empty: until frame_count, or for ever.
   std::function<bool()> at_end;

@@ -61,27 +61,35 @@ const std::map<std::string, Key>& keys() {
   using O = CameraOptions;
   using T = const std::string&;
   static const std::map<std::string, Key> all{
-      {"format", {[](O& o, T t) { return one_of(t, format_names(), o.format); }, "MJPG",
-                  "GREY, YUYV, UYVY, NV12, YU12, RGB3, BGR3 or MJPG; else the first of these that the device has"}},
+      {"format",
+       {[](O& o, T t) { return one_of(t, format_names(), o.format); }, "MJPG",
+        "GREY, YUYV, UYVY, NV12, YU12, RGB3, BGR3 or MJPG; else the first of these that the device has"}},
       {"size", {[](O& o, T t) { return whole_size(t, o.size); }, "640x480", "picture size in px"}},
       {"rate", {[](O& o, T t) { return number(t, 0.1, 1000, o.rate_hz); }, "25", "frames per second"}},
       {"input", {[](O& o, T t) { return !(o.input = t).empty(); }, "HDMI", "number or part of the name of an input"}},
-      {"fields", {[](O& o, T t) { return one_of(t, {"double", "refuse"}, o.fields); }, "refuse",
-                  "interlaced pictures: double (default) shows one field with its lines doubled; refuse"}},
-      {"crop", {[](O& o, T t) { return crop_text(t, o.crop); }, "round",
-                "round: to the endoscope's round picture, found in the first one; or X:Y:WIDTH:HEIGHT in px"}},
-      {"frames", {[](O& o, T t) {
-                    std::string which;
-                    const bool known = one_of(t, {"newest", "every"}, which);
-                    return o.every_frame = which == "every", known;
-                  },
-                  "every", "newest (default of track and servo) or every"}},
-      {"no-frame-s", {[](O& o, T t) { return number(t, 0.05, 60, o.no_frame_s); }, "0.5",
-                      "without a good frame for so long the stream is started anew"}},
-      {"frozen-s", {[](O& o, T t) { return number(t, 0, 3600, o.frozen_s); }, "1",
-                    "identical pictures for so long are frozen; 0: never"}},
-      {"give-up-s", {[](O& o, T t) { return number(t, 0, 1e6, o.give_up_s); }, "30",
-                     "a device that is away longer ends the run"}},
+      {"fields",
+       {[](O& o, T t) {
+          return one_of(t, {"double", "refuse"}, o.fields);
+        },
+        "refuse", "interlaced pictures: double (default) shows one field with its lines doubled; refuse"}},
+      {"crop",
+       {[](O& o, T t) { return crop_text(t, o.crop); }, "round",
+        "round: to the endoscope's round picture, found in the first one; or X:Y:WIDTH:HEIGHT in px"}},
+      {"frames",
+       {[](O& o, T t) {
+          std::string which;
+          const bool known = one_of(t, {"newest", "every"}, which);
+          return o.every_frame = which == "every", known;
+        },
+        "every", "newest (default of track and servo) or every"}},
+      {"no-frame-s",
+       {[](O& o, T t) { return number(t, 0.05, 60, o.no_frame_s); }, "0.5",
+        "without a good frame for so long the stream is started anew"}},
+      {"frozen-s",
+       {[](O& o, T t) { return number(t, 0, 3600, o.frozen_s); }, "1",
+        "identical pictures for so long are frozen; 0: never"}},
+      {"give-up-s",
+       {[](O& o, T t) { return number(t, 0, 1e6, o.give_up_s); }, "30", "a device that is away longer ends the run"}},
   };
   return all;
 }
@@ -95,8 +103,8 @@ void take(CameraOptions& options, const std::string& part, const std::string& so
   if (key == keys().end())
     options.controls.emplace_back(name, value);  // the device says whether it has it
   else if (!key->second.take(options, value))
-    throw ConfigError(fmt::format("{}: {}={} is no such value; write for instance {}={} ({})", source, name, value, name,
-                                  key->second.form, key->second.help));
+    throw ConfigError(fmt::format("{}: {}={} is no such value; write for instance {}={} ({})", source, name, value,
+                                  name, key->second.form, key->second.help));
 }
 
 }  // namespace
@@ -119,7 +127,8 @@ CameraOptions parse_camera(const std::string& source) {
 
 std::string camera_option_help() {
   std::string text = "after the device, separated by commas:\n";
-  for (const auto& [name, key] : keys()) text += fmt::format("  {:<24}{}\n", fmt::format("{}={}", name, key.form), key.help);
+  for (const auto& [name, key] : keys())
+    text += fmt::format("  {:<24}{}\n", fmt::format("{}={}", name, key.form), key.help);
   return text + "  CONTROL=VALUE           a control of the device, as --probe lists them: exposure_time_absolute=80\n";
 }
 

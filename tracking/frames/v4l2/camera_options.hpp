@@ -8,11 +8,11 @@
 namespace heartservo::tracking::v4l2 {
 
 struct CameraOptions {
-  std::string device;      ///< /dev/video0
-  std::string format;      ///< GREY, YUYV, UYVY, NV12, YU12, RGB3, BGR3 or MJPG; "": the first of these that it has
-  cv::Size size;           ///< px; empty: the device's own (HDMI: that of the signal)
-  double rate_hz = 0;      ///< 0: the device's own
-  std::string input;       ///< number or part of its name; "": the one that is chosen
+  std::string device;  ///< /dev/video0
+  std::string format;  ///< GREY, YUYV, UYVY, NV12, YU12, RGB3, BGR3 or MJPG; "": the first of these that it has
+  cv::Size size;       ///< px; empty: the device's own (HDMI: that of the signal)
+  double rate_hz = 0;  ///< 0: the device's own
+  std::string input;   ///< number or part of its name; "": the one that is chosen
   std::string fields = "double";  ///< interlaced: `double` the lines of a field, or `refuse`
   std::string crop;               ///< "", "round" (the endoscope's picture is found in the first one) or x:y:w:h in px
   std::vector<std::pair<std::string, std::string>> controls;  ///< name and value, set in this order

@@ -16,7 +16,7 @@ namespace heartservo::tracking::v4l2 {
 
 namespace {
 
-constexpr int WAIT_MS = 50;      // of one step for a frame
+constexpr int WAIT_MS = 50;       // of one step for a frame
 constexpr double IDLE_s = 0.001;  // between looks at a device that says it has a frame and has none
 
 }  // namespace
@@ -121,8 +121,8 @@ bool CaptureCore::usable(const Filled& filled) {
   if (broken || filled.bytes_used == 0) {
     ++bad_in_row_;
     statistics_.bad();
-    tell(Event::BAD_BUFFER, fmt::format("{}, number {}, {} bytes", broken ? "marked as broken" : "empty", filled.sequence,
-                                        filled.bytes_used));
+    tell(Event::BAD_BUFFER, fmt::format("{}, number {}, {} bytes", broken ? "marked as broken" : "empty",
+                                        filled.sequence, filled.bytes_used));
     return false;
   }
   bad_in_row_ = 0;
@@ -184,8 +184,8 @@ bool CaptureCore::deliver(const Filled& filled, Frame& frame) {
   recovered();
   if (frame.grey.size() != size_) {
     frame.status = FrameStatus::UNREADABLE;
-    frame.note = fmt::format("{}: the picture is {} x {} px, the first one was {} x {}", options_.device, frame.grey.cols,
-                             frame.grey.rows, size_.width, size_.height);
+    frame.note = fmt::format("{}: the picture is {} x {} px, the first one was {} x {}", options_.device,
+                             frame.grey.cols, frame.grey.rows, size_.width, size_.height);
     frame.grey.release();
     frame.colour.release();
     return true;
@@ -241,7 +241,8 @@ CaptureReport CaptureCore::report() const {
   report.timings = granted.timings ? granted.timings->text() : "";
   report.controls = granted.controls;
   report.event_counts = log_.counts();
-  for (const auto& record : log_.records()) report.events.push_back({record.time_s, name_of(record.event), record.detail});
+  for (const auto& record : log_.records())
+    report.events.push_back({record.time_s, name_of(record.event), record.detail});
   return report;
 }
 

@@ -44,7 +44,7 @@ class CaptureCore {
   double now_s() const { return calls_.now_s() - origin_s_; }  ///< on the clock of Frame::time_s
 
  private:
-  void connect();     // open + set up + start; throws
+  void connect();  // open + set up + start; throws
   void disconnect();
   void fail(int error);
   void restart(const std::string& why);
@@ -77,7 +77,7 @@ class CaptureCore {
   bool gone_untold_ = false;  // the device is gone; whether its node is too shows in a moment
   double last_good_s_ = 0, down_since_s_ = -1, next_signal_check_s_ = 0, next_try_s_ = 0;
   int bad_in_row_ = 0, restarts_ = 0;
-  std::uint64_t count_ = 0;  // frames since the start, missing ones too
+  std::uint64_t count_ = 0;                  // frames since the start, missing ones too
   std::uint32_t missing_ = 0, skipped_ = 0;  // since the last one delivered
   std::optional<Timings> changed_;
   cv::Rect crop_;

@@ -73,7 +73,8 @@ void CaptureCore::reopen() {
   if (gone_untold_) {
     gone_untold_ = false;
     const bool kept = calls_.exists(options_.device);
-    tell(kept ? Event::DISCONNECTED : Event::UNPLUGGED, kept ? "the device is gone, its node is there" : "the node is gone");
+    tell(kept ? Event::DISCONNECTED : Event::UNPLUGGED,
+         kept ? "the device is gone, its node is there" : "the node is gone");
     set_fault(stopped_, kept ? "the device is disconnected" : "the device is unplugged");
   }
   try {
@@ -140,8 +141,8 @@ void CaptureCore::check_signal() {
     changed_ = signal.timings;
     return;
   }
-  tell(Event::RESOLUTION_CHANGED, fmt::format("from {} to {}", granted_.timings ? granted_.timings->text() : "nothing",
-                                              signal.timings->text()));
+  tell(Event::RESOLUTION_CHANGED,
+       fmt::format("from {} to {}", granted_.timings ? granted_.timings->text() : "nothing", signal.timings->text()));
   down("the signal changed");
   come_back_later(0);
 }

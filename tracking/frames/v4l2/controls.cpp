@@ -38,8 +38,14 @@ int value_of(SystemCalls& calls, int fd, std::uint32_t id, std::int32_t& value) 
 }
 
 Control described(SystemCalls& calls, int fd, const v4l2_queryctrl& query) {
-  Control control{query.id, normalised(reinterpret_cast<const char*>(query.name)), query.minimum, query.maximum, query.step,
-                  query.default_value, query.default_value, {}};
+  Control control{query.id,
+                  normalised(reinterpret_cast<const char*>(query.name)),
+                  query.minimum,
+                  query.maximum,
+                  query.step,
+                  query.default_value,
+                  query.default_value,
+                  {}};
   value_of(calls, fd, query.id, control.value);
   if (query.type != V4L2_CTRL_TYPE_MENU) return control;
   for (std::int32_t i = query.minimum; i <= query.maximum && i - query.minimum < MOST_CONTROLS; ++i) {
@@ -59,8 +65,8 @@ std::int32_t number_of(const Control& control, const std::string& text, const st
   std::int32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < control.low || value > control.high)
-    throw ConfigError(fmt::format("{}: {}={}: give a whole number from {} to {}", device, control.name, text, control.low,
-                                  control.high));
+    throw ConfigError(fmt::format("{}: {}={}: give a whole number from {} to {}", device, control.name, text,
+                                  control.low, control.high));
   return value;
 }
 
@@ -71,8 +77,9 @@ const Control& named(const std::vector<Control>& controls, const std::string& na
     names.push_back(control.name);
   }
   for (const char* option : {"format", "size", "rate", "input", "fields", "crop", "frames"}) names.emplace_back(option);
-  throw ConfigError(fmt::format("{}: has no control and we have no option '{}'{}; 'heartservo capture --probe {}' lists them",
-                                device, name, did_you_mean(name, names), device));
+  throw ConfigError(
+      fmt::format("{}: has no control and we have no option '{}'{}; 'heartservo capture --probe {}' lists them", device,
+                  name, did_you_mean(name, names), device));
 }
 
 }  // namespace

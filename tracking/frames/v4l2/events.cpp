@@ -5,10 +5,11 @@
 namespace heartservo::tracking::v4l2 {
 
 const char* name_of(Event event) {
-  static constexpr const char* NAMES[] = {
-      "bad_buffer", "bad_picture", "sequence_gap", "sequence_restart", "time_jump",          "stream_error",   "unplugged",
-      "disconnected", "no_signal", "no_lock",      "out_of_range",     "signal_back",        "resolution_changed",
-      "frozen_picture", "picture_moves", "starved", "restarted",       "reopened",           "recovered",      "gave_up"};
+  static constexpr const char* NAMES[] = {"bad_buffer",         "bad_picture",    "sequence_gap",  "sequence_restart",
+                                          "time_jump",          "stream_error",   "unplugged",     "disconnected",
+                                          "no_signal",          "no_lock",        "out_of_range",  "signal_back",
+                                          "resolution_changed", "frozen_picture", "picture_moves", "starved",
+                                          "restarted",          "reopened",       "recovered",     "gave_up"};
   static_assert(std::size(NAMES) == static_cast<std::size_t>(Event::GAVE_UP) + 1);
   return NAMES[static_cast<std::size_t>(event)];
 }

@@ -91,8 +91,8 @@ DeviceOffer offer_of(SystemCalls& calls, int fd, const std::string& device) {
   const auto text = [](const auto& bytes) { return std::string(reinterpret_cast<const char*>(bytes)); };
   DeviceOffer offer{device, text(capability.driver), text(capability.card), text(capability.bus_info), {}, 0, {}};
   if (!(can & V4L2_CAP_VIDEO_CAPTURE) || !(can & V4L2_CAP_STREAMING))
-    throw DeviceError(fmt::format("{}: {} cannot capture by streaming; 'heartservo capture --list' shows what can", device,
-                                  offer.card));
+    throw DeviceError(fmt::format("{}: {} cannot capture by streaming; 'heartservo capture --list' shows what can",
+                                  device, offer.card));
   offer.inputs = inputs_of(calls, fd);
   int chosen = 0;
   if (calls.ioctl(fd, VIDIOC_G_INPUT, &chosen) == 0) offer.input = static_cast<std::uint32_t>(chosen);

@@ -10,8 +10,8 @@
 namespace heartservo::tracking::v4l2 {
 
 struct SizeOffer {
-  cv::Size low, high;          ///< the same for one size, else a range
-  std::vector<double> rates;   ///< Hz; empty: it does not say
+  cv::Size low, high;            ///< the same for one size, else a range
+  std::vector<double> rates;     ///< Hz; empty: it does not say
   bool rates_are_range = false;  ///< the first to the last of `rates`
 };
 

@@ -56,16 +56,19 @@ std::string PictureDecoder::decode_jpeg(std::span<const std::uint8_t> bytes, boo
   const auto decode = [&](int type, TJPF format, cv::Mat& to) {
     to.create(size, type);
     // a picture with a warning is damaged: the decoder filled the rest with grey
-    return tjDecompress2(jpeg_, bytes.data(), length, to.data, width, static_cast<int>(to.step), height, format, 0) == 0;
+    return tjDecompress2(jpeg_, bytes.data(), length, to.data, width, static_cast<int>(to.step), height, format, 0) ==
+           0;
   };
-  if (!decode(CV_8UC1, TJPF_GRAY, grey) || (with_colour && sampling != TJSAMP_GRAY && !decode(CV_8UC3, TJPF_BGR, colour)))
+  if (!decode(CV_8UC1, TJPF_GRAY, grey) ||
+      (with_colour && sampling != TJSAMP_GRAY && !decode(CV_8UC3, TJPF_BGR, colour)))
     return fmt::format("is a damaged JPEG: {}", tjGetErrorStr2(jpeg_));
   return "";
 }
 
 std::string PictureDecoder::decode_raw(std::span<const std::uint8_t> bytes, int height, bool with_colour, cv::Mat& grey,
                                        cv::Mat& colour) {
-  const std::size_t step = granted_.bytes_per_line, needed = picture_bytes(granted_.fourcc, granted_.bytes_per_line, height);
+  const std::size_t step = granted_.bytes_per_line,
+                    needed = picture_bytes(granted_.fourcc, granted_.bytes_per_line, height);
   if (bytes.size() < needed) return fmt::format("has {} of {} bytes", bytes.size(), needed);
   const int width = granted_.size.width;
   const std::uint8_t* start = bytes.data();
@@ -85,14 +88,29 @@ std::string PictureDecoder::decode_raw(std::span<const std::uint8_t> bytes, int 
     if (with_colour) cv::cvtColor(packed_420(start, {width, height}, step, planar), colour, code);
   };
   switch (granted_.fourcc) {
-    case V4L2_PIX_FMT_GREY: view(start, height, width, CV_8UC1, step).copyTo(grey); break;
-    case V4L2_PIX_FMT_YUYV: packed_422(0, cv::COLOR_YUV2BGR_YUY2); break;
-    case V4L2_PIX_FMT_UYVY: packed_422(1, cv::COLOR_YUV2BGR_UYVY); break;
-    case V4L2_PIX_FMT_RGB24: rgb(cv::COLOR_RGB2GRAY, true); break;
-    case V4L2_PIX_FMT_BGR24: rgb(cv::COLOR_BGR2GRAY, false); break;
-    case V4L2_PIX_FMT_NV12: planes_420(false, cv::COLOR_YUV2BGR_NV12); break;
-    case V4L2_PIX_FMT_YUV420: planes_420(true, cv::COLOR_YUV2BGR_I420); break;
-    default: return fmt::format("is of the format {}, which is not known", fourcc_name(granted_.fourcc));
+    case V4L2_PIX_FMT_GREY:
+      view(start, height, width, CV_8UC1, step).copyTo(grey);
+      break;
+    case V4L2_PIX_FMT_YUYV:
+      packed_422(0, cv::COLOR_YUV2BGR_YUY2);
+      break;
+    case V4L2_PIX_FMT_UYVY:
+      packed_422(1, cv::COLOR_YUV2BGR_UYVY);
+      break;
+    case V4L2_PIX_FMT_RGB24:
+      rgb(cv::COLOR_RGB2GRAY, true);
+      break;
+    case V4L2_PIX_FMT_BGR24:
+      rgb(cv::COLOR_BGR2GRAY, false);
+      break;
+    case V4L2_PIX_FMT_NV12:
+      planes_420(false, cv::COLOR_YUV2BGR_NV12);
+      break;
+    case V4L2_PIX_FMT_YUV420:
+      planes_420(true, cv::COLOR_YUV2BGR_I420);
+      break;
+    default:
+      return fmt::format("is of the format {}, which is not known", fourcc_name(granted_.fourcc));
   }
   return "";
 }

@@ -13,8 +13,8 @@ namespace heartservo::tracking::v4l2 {
 
 namespace {
 
-constexpr int MOST_BLACK = 24;           // grey level that black still has (16 in limited range, and noise)
-constexpr double LEAST_RADIUS = 0.2;     // of the shorter side
+constexpr int MOST_BLACK = 24;            // grey level that black still has (16 in limited range, and noise)
+constexpr double LEAST_RADIUS = 0.2;      // of the shorter side
 constexpr double MOST_OFF_CIRCLE = 0.02;  // of the radius: RMS distance of the outline from the circle
 
 struct Circle {
@@ -60,8 +60,11 @@ std::optional<cv::Rect> round_picture(const cv::Mat& grey) {
   const Circle circle = fitted(outline);
   if (circle.radius < LEAST_RADIUS * std::min(grey.rows, grey.cols) || circle.rms > MOST_OFF_CIRCLE * circle.radius)
     return std::nullopt;
-  const auto even = [](double v, int limit) { return std::clamp(2 * static_cast<int>(std::lround(v / 2)), 0, limit & ~1); };
-  const int left = even(circle.centre.x - circle.radius, grey.cols), top = even(circle.centre.y - circle.radius, grey.rows);
+  const auto even = [](double v, int limit) {
+    return std::clamp(2 * static_cast<int>(std::lround(v / 2)), 0, limit & ~1);
+  };
+  const int left = even(circle.centre.x - circle.radius, grey.cols),
+            top = even(circle.centre.y - circle.radius, grey.rows);
   const int right = even(circle.centre.x + circle.radius + 1, grey.cols),
             bottom = even(circle.centre.y + circle.radius + 1, grey.rows);
   if (right - left < 32 || bottom - top < 32) return std::nullopt;
@@ -73,14 +76,16 @@ cv::Rect crop_of(const std::string& crop, const cv::Mat& grey, const std::string
   if (crop == "round") {
     const auto found = round_picture(grey);
     if (!found)
-      throw DeviceError(device + ": crop=round: the first picture shows no bright disc on black; hold the endoscope into "
-                                 "the light, or give crop=X:Y:WIDTH:HEIGHT");
+      throw DeviceError(device +
+                        ": crop=round: the first picture shows no bright disc on black; hold the endoscope into "
+                        "the light, or give crop=X:Y:WIDTH:HEIGHT");
     return *found;
   }
   cv::Rect rect;
   std::sscanf(crop.c_str(), "%d:%d:%d:%d", &rect.x, &rect.y, &rect.width, &rect.height);
   if ((rect & cv::Rect({0, 0}, grey.size())) != rect || rect.area() == 0)
-    throw DeviceError(fmt::format("{}: crop={} is not inside the picture of {} x {} px", device, crop, grey.cols, grey.rows));
+    throw DeviceError(
+        fmt::format("{}: crop={} is not inside the picture of {} x {} px", device, crop, grey.cols, grey.rows));
   return rect;
 }
 

@@ -25,7 +25,8 @@ std::string lower(std::string text) {
 void choose_input(SystemCalls& calls, int fd, const CameraOptions& options, DeviceOffer& offer) {
   if (!options.input.empty()) {
     const auto found = std::find_if(offer.inputs.begin(), offer.inputs.end(), [&](const InputOffer& input) {
-      return options.input == std::to_string(input.index) || lower(input.name).find(lower(options.input)) != std::string::npos;
+      return options.input == std::to_string(input.index) ||
+             lower(input.name).find(lower(options.input)) != std::string::npos;
     });
     if (found == offer.inputs.end()) {
       std::vector<std::string> names;
@@ -35,7 +36,8 @@ void choose_input(SystemCalls& calls, int fd, const CameraOptions& options, Devi
     }
     int index = static_cast<int>(found->index);
     if (const int result = calls.ioctl(fd, VIDIOC_S_INPUT, &index); result < 0)
-      throw DeviceError(fmt::format("{}: input {} cannot be chosen: {}", offer.device, found->name, std::strerror(-result)));
+      throw DeviceError(
+          fmt::format("{}: input {} cannot be chosen: {}", offer.device, found->name, std::strerror(-result)));
     offer = offer_of(calls, fd, offer.device);  // formats and sizes are the input's
   }
 }
@@ -56,7 +58,8 @@ std::uint32_t choose_format(const CameraOptions& options, const DeviceOffer& off
   if (foreign || offer.formats.empty()) return options.format.empty() ? V4L2_PIX_FMT_YUV420 : fourcc_of(options.format);
   std::vector<std::string> names;
   for (const auto& format : offer.formats) names.push_back(format.name);
-  throw DeviceError(fmt::format("{}: has no format {}; it has {}", offer.device, options.format, fmt::join(names, ", ")));
+  throw DeviceError(
+      fmt::format("{}: has no format {}; it has {}", offer.device, options.format, fmt::join(names, ", ")));
 }
 
 void set_format(SystemCalls& calls, int fd, const CameraOptions& options, std::uint32_t fourcc, Granted& granted) {
@@ -139,9 +142,10 @@ Granted set_up(SystemCalls& calls, int fd, const CameraOptions& options) {
   }
   set_format(calls, fd, options, choose_format(options, offer), granted);
   if (options.fields == "refuse" && granted.field != V4L2_FIELD_NONE)
-    throw DeviceError(fmt::format("{}: sends interlaced pictures ({}), which fields=refuse refuses; let the source send "
-                                  "progressive ones, or use fields=double",
-                                  offer.device, granted.format()));
+    throw DeviceError(
+        fmt::format("{}: sends interlaced pictures ({}), which fields=refuse refuses; let the source send "
+                    "progressive ones, or use fields=double",
+                    offer.device, granted.format()));
   granted.rate_hz = set_rate(calls, fd, granted.timings ? 0 : options.rate_hz);
   if (granted.timings && granted.timings->rate_hz > 0)
     granted.rate_hz = granted.timings->rate_hz * (is_single_field(granted.field) ? 2 : 1);

@@ -10,9 +10,9 @@ namespace heartservo::tracking::v4l2 {
 
 namespace {
 
-constexpr double OLDEST_s = 2;      // a frame that took longer from the sensor to us has a wrong stamp
-constexpr double FUTURE_s = 0.1;    // drivers under emulation stamp up to 35 ms ahead
-constexpr double LATER_s = 1e-6;    // frames are told apart by it where a stamp repeats
+constexpr double OLDEST_s = 2;    // a frame that took longer from the sensor to us has a wrong stamp
+constexpr double FUTURE_s = 0.1;  // drivers under emulation stamp up to 35 ms ahead
+constexpr double LATER_s = 1e-6;  // frames are told apart by it where a stamp repeats
 
 }  // namespace
 

@@ -22,7 +22,7 @@ namespace {
 constexpr double FIRST_PICTURE_s = 5;  // a camera may need a second for its light
 constexpr double PATIENCE_s = 0.1;     // of next(): at least this, or
 constexpr double PATIENCE_PERIODS = 2.5;
-constexpr double QUEUE_s = 2;  // of frames that wait to be asked for
+constexpr double QUEUE_s = 2;    // of frames that wait to be asked for
 constexpr int RATE_FRAMES = 10;  // that the rate is measured on where the device does not say it
 
 std::string wanted_text(const CameraOptions& o) {
@@ -133,7 +133,8 @@ class Camera final : public V4l2Camera {
     const double rate = core_.report().measured_rate_hz;
     measured_hz_ = rate > 5 ? std::round(rate) : rate;
     if (!(measured_hz_ > 0))
-      throw DeviceError(fmt::format("{}: too few frames came within {} s to tell their rate", options_.device, FIRST_PICTURE_s));
+      throw DeviceError(
+          fmt::format("{}: too few frames came within {} s to tell their rate", options_.device, FIRST_PICTURE_s));
   }
 
   void run() {
