@@ -12,6 +12,10 @@
 #include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
 #include "tools/album.hpp"
+#include "tools/capture/capture_summary.hpp"
+#include "tools/capture/live_timing.hpp"
+#include "tools/capture/outline.hpp"
+#include "tools/capture/real_time.hpp"
 #include "tools/command.hpp"
 #include "tools/igtl/igtl_stream.hpp"
 #include "tools/interrupt.hpp"
@@ -20,6 +24,7 @@
 #include "tools/progress.hpp"
 #include "tools/servo_summary.hpp"
 #include "tools/short_video.hpp"
+#include "tracking/frames/live_source.hpp"
 #include "tracking/settings/errors.hpp"
 
 namespace heartservo::tools {
@@ -66,6 +71,14 @@ void publish(IgtlStream& stream, const servo::LoopRecord& r) {
   stream.publish(snapshot);
 }
 
+// The picture has the tool in it already.
+void show(Window& window, const servo::LoopRecord& record) {
+  if (record.frame.grey.empty()) return;
+  std::vector<Window::Outline> outlines;
+  for (const auto* track : {&record.track, &record.marker_track}) add_outline(*track, outlines);
+  window.show(record.frame.grey, outlines);
+}
+
 }  // namespace
 
 void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_hz) {
@@ -83,7 +96,10 @@ void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_h
 
 ServoOutcome run_loop(ServoRequest request) {
   sim::Scene& scene = request.scene;
+  const RealTime real_time(request.real_time);  // before the table: a camera's thread inherits it
   const auto table = sim::make_table(scene);
+  tracking::LiveSource* live = table->frames().live();
+  if (request.real_time && !live) throw ConfigError("--real-time is for a camera: servo v4l2:/dev/video0");
   const servo::LoopOptions loop_options = sim::loop_options(scene, *table);
   refuse_hopeless(loop_options, scene, table->robot());
   servo::LoopStages stages = sim::make_stages(scene, *table);
@@ -98,18 +114,21 @@ ServoOutcome run_loop(ServoRequest request) {
   std::filesystem::path film;
   if (request.before_run) film = request.before_run();
   ServoOutcome outcome;
-  outcome.frames = make_loop_table(rows_ahead(expected));
+  outcome.frames = make_loop_table(rows_ahead(expected), live != nullptr);
+  LiveTiming live_timing(loop_options.frame_rate_hz, rows_ahead(expected));
   servo::Score score(scene.settle_s, 1 / loop_options.frame_rate_hz);
   score.reserve(rows_ahead(expected));
   Album album(expected, [](double px) { return fmt::format("{:.1f} px from the goal", px); });
   std::optional<ShortVideo> video;
   std::optional<IgtlStream> igtl;
   if (request.igtl_port > 0) igtl.emplace(request.igtl_port);
+  std::optional<Window> window;
+  if (request.show) window.emplace("heartservo: " + request.source, table->frames().size());
   ServoRunFacts facts;
   double looped_s = 0;  // in the loop itself: not what is made for people to look at
   {
     const Interrupt interrupt;
-    Progress progress(request.label, expected, request.quiet);
+    Progress progress(request.label, expected, request.quiet || request.real_time);
     servo::LoopRecord record;
     const auto step = [&] {
       const double begin = now_s();
@@ -122,6 +141,9 @@ ServoOutcome run_loop(ServoRequest request) {
       const servo::TruthSample truth = table->truth(record);
       score.add(record, truth);
       append(outcome.frames, record, truth);
+      if (live) live_timing.add(record, now_s());
+      if (window) show(*window, record);
+      if (request.real_time) continue;
       const double off_px = record.frame.time_s < scene.settle_s ? NAN : (truth.tip_px - truth.goal_px).norm();
       if (record.frame.status == tracking::FrameStatus::OK)
         album.look_at({outcome.frames.rows() - 1, record.frame.time_s, off_px, "",
@@ -143,6 +165,12 @@ ServoOutcome run_loop(ServoRequest request) {
   facts.real_time_factor =
       static_cast<double>(outcome.frames.rows()) / loop_options.frame_rate_hz / std::max(1e-9, looped_s);
   outcome.summary = servo_summary(score.summary(), scene, facts);
+  if (live) {
+    outcome.summary["capture"] = json_of(live->report());
+    outcome.summary["live"] = live_timing.summary();
+    outcome.summary["live"]["real_time"] = real_time.granted();
+    outcome.device_failure = live->failure();
+  }
   if (video) outcome.summary["still_view"] = video->finish();
   if (video && !outcome.summary["still_view"].is_null())
     outcome.video = {film_caption(outcome.summary["still_view"]), film};

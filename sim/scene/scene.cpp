@@ -9,6 +9,7 @@
 
 #include "servo/control/registry.hpp"
 #include "tracking/camera/camera_file.hpp"
+#include "tracking/frames/v4l2/camera_options.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/planar/registry.hpp"
 #include "tracking/settings/errors.hpp"
@@ -149,6 +150,7 @@ Scene load_scene(const std::string& file) {
 }
 
 std::string resolve(const Scene& scene, const std::string& path) {
+  if (tracking::v4l2::is_camera(path)) return path;
   const std::filesystem::path p(path);
   return p.is_absolute() ? path : (std::filesystem::path(scene.folder) / p).lexically_normal().string();
 }
