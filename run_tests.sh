@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
-# run_tests.sh [--sanitizers]: installs what is missing, builds heartservo and runs all its tests but those that need a
-# virtual machine with camera drivers (label vm). With --sanitizers also the unit tests under the address,
-# undefined-behaviour and thread sanitizers. Ends with non-zero on any failure, after all steps.
+# run_tests.sh [--sanitizers] [--vm]: installs what is missing, builds heartservo and runs all its tests but those that
+# need a virtual machine with camera drivers (label vm). With --vm also those; they are skipped where the virtual machine or
+# the kernel cannot be had. With --sanitizers also the unit tests under the address, undefined-behaviour and thread
+# sanitizers. Ends with non-zero on any failure, after all steps.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
-sanitizers=0
+sanitizers=0 vm=0
 for argument in "$@"; do
   case $argument in
     --sanitizers) sanitizers=1 ;;
-    *) echo "run_tests.sh: unknown option '$argument'; the only one is --sanitizers" >&2; exit 2 ;;
+    --vm) vm=1 ;;
+    *) echo "run_tests.sh: unknown option '$argument'; there are --sanitizers and --vm" >&2; exit 2 ;;
   esac
 done
 
@@ -46,6 +48,10 @@ step "Packages" tools/setup/install.sh --tests || exit 1
 
 if step "Build, release" build release; then
   step "Tests, release" suite release -LE vm || true
+  if [[ $vm -eq 1 ]]; then
+    tools/setup/install.sh --tests --vm || echo "without them the tests in the virtual machine are skipped"
+    step "Tests on camera drivers, in a virtual machine" suite release -L vm || true
+  fi
 fi
 if [[ $sanitizers -eq 1 ]]; then
   if step "Build, address and undefined-behaviour sanitizers" build asan unit_tests; then

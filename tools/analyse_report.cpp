@@ -45,12 +45,13 @@ Series densities(const servo::MotionAnalysis& m) {
   return {m.spectra[0].density, m.spectra[1].density, m.spectra[2].density};
 }
 
-// Positions about their means, so that all three fit one plot.
+// Places about their means, so that all three fit one plot.
 ReportPlot over_time(const std::string& title, const std::string& column, const std::string& unit,
                      const std::string& shown, double scale, bool truth, const std::string& note) {
   ReportPlot plot{title, shown, {}, scale, note};
   if (truth) plot.series.push_back({"truth z", fmt::format("truth/{}/z_{}", column, unit), true});
   for (const char* axis : {"z", "x", "y"}) plot.series.push_back({axis, fmt::format("{}/{}_{}", column, axis, unit)});
+  plot.about_mean = column == "respiration" || column == "position";
   return plot;
 }
 
@@ -120,10 +121,10 @@ Report analyse_report(const AnalysisRun& run, const json& summary, const TimeTab
   report.plots = {
       over_time("Beat", "beat", "m", "mm", 1e3, truth, fmt::format("What lies above {:.2f} Hz.", split)),
       density,
-      over_time("Respiration", "respiration", "m", "mm", 1e3, truth, fmt::format("What lies below {:.2f} Hz.", split)),
+      over_time("Respiration", "respiration", "m", "mm", 1e3, truth, fmt::format("What lies below {:.2f} Hz, about its mean.", split)),
       over_time("Velocity", "velocity", "m_s", "mm/s", 1e3, truth, ""),
       over_time("Acceleration", "acceleration", "m_s2", "m/s²", 1, truth, ""),
-      over_time("Position", "position", "m", "mm", 1e3, truth, "Camera frame."),
+      over_time("Position", "position", "m", "mm", 1e3, truth, "Camera frame, about the mean."),
   };
   report.tables = analyse_tables(summary);
   report.table = &motion;

@@ -8,7 +8,10 @@
 #include <filesystem>
 
 #include "tools/report/report.hpp"
+#include "tools/report/stored_pictures.hpp"
 #include "tools/run_folder.hpp"
+#include "tools/shipped.hpp"
+#include "tracking/frames/v4l2/camera_options.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/settings/yaml_reader.hpp"
 #include "tracking/settings/yaml_writer.hpp"
@@ -21,11 +24,16 @@ constexpr double kEndless_s = 1e5;  // the longest run
 
 std::string absolute(const std::string& path) { return std::filesystem::absolute(path).lexically_normal().string(); }
 
+// A path as it can be used from everywhere; a camera is named, not found.
+std::string named(const std::string& source) {
+  return tracking::v4l2::is_camera(source) ? source : absolute(source);
+}
+
 // Defaults for frames from disk: an assumed depth instead of a landmark.
 sim::Scene recorded_scene(const std::string& source) {
   sim::Scene scene;
   scene.title = source;
-  scene.recording.source = absolute(source);
+  scene.recording.source = named(source);
   scene.camera.frame_rate_hz = 0;  // the source's own: a video's rate, 25 Hz for pictures
   scene.engines.estimator = "assumed_depth";
   scene.engines.predictor = "hold";      // at 25 frames/s a straight line over 75 ms overshoots more than it helps
@@ -115,7 +123,7 @@ bool is_scene(const std::string& source) {
 
 sim::Scene scene_for(const RunOptions& run, const RecordedOptions& recorded) {
   if (run.source.empty()) throw ConfigError("SOURCE is missing: give a scene such as scenes/pig_2007.yaml, or frames");
-  sim::Scene scene = is_scene(run.source) ? sim::load_scene(run.source) : recorded_scene(run.source);
+  sim::Scene scene = is_scene(run.source) ? sim::load_scene(shipped(run.source)) : recorded_scene(run.source);
   if (run.seed) scene.seed = *run.seed;
   if (!recorded.roi.empty()) scene.recording.roi = recorded.roi;
   if (!recorded.camera.empty()) scene.camera.calibration = absolute(recorded.camera);
@@ -141,7 +149,7 @@ sim::Scene scene_for(const RunOptions& run, const RecordedOptions& recorded) {
 }
 
 std::string stem_of(const std::string& source) {
-  std::filesystem::path path(source);
+  std::filesystem::path path(source.substr(0, tracking::v4l2::is_camera(source) ? source.find(',') : source.npos));
   if (!path.has_filename()) path = path.parent_path();
   return path.stem().string();
 }
@@ -151,7 +159,7 @@ std::string config_text(const sim::Scene& scene, const std::string& command) {
   for (std::string* path : {&resolved.camera.calibration, &resolved.recording.source, &resolved.recording.right,
                             &resolved.recording.reference, &resolved.motion.beats, &resolved.ecg.record,
                             &resolved.loop.path.file})
-    if (!path->empty()) *path = absolute(sim::resolve(scene, *path));
+    if (!path->empty()) *path = named(sim::resolve(scene, *path));
   return fmt::format("# heartservo {} {}: the resolved configuration; it can be run again as a scene\n{}",
                      HEARTSERVO_VERSION, command, to_yaml(resolved));
 }
@@ -160,6 +168,7 @@ void finish_run(RunFolder& folder, const Report& report, const RunOptions& optio
   const std::string summary = report.summary.dump(2) + "\n";
   folder.write("config.yaml", report.config_yaml);
   folder.write("summary.json", summary);
+  write_pictures(folder.file(""), report.pictures);
   write_report(report, folder.file("report.html"));
   folder.finish();
   if (options.json)

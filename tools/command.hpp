@@ -40,6 +40,11 @@ Command add_predict_command(CLI::App& program);
 Command add_analyse_command(CLI::App& program);
 Command add_beats_command(CLI::App& program);
 Command add_stabilise_command(CLI::App& program);
+Command add_capture_command(CLI::App& program);
+Command add_paper_command(CLI::App& program);
+Command add_report_command(CLI::App& program);
+Command add_doctor_command(CLI::App& program);
+Command add_sweep_command(CLI::App& program);
 
 /// A check for options: a finite number from `low` to `high`. CLI::Range lets NaN pass.
 CLI::Validator finite(double low, double high);

@@ -10,6 +10,7 @@ namespace heartservo::tools {
 namespace {
 
 constexpr double kInner = 0.9;  // of the region: its rim is another thing's neighbour
+constexpr int kAround_px = 80;  // of it, in which it is looked for: more than a heart moves
 
 }  // namespace
 
@@ -28,19 +29,23 @@ ImageMotion::~ImageMotion() = default;
 Eigen::Vector2d ImageMotion::add(const cv::Mat& grey) {
   if (grey.empty()) return Eigen::Vector2d::Constant(NAN);
   if (first_.empty()) {
-    first_ = grey.clone();
-    region_ &= cv::Rect(0, 0, grey.cols, grey.rows);
+    const cv::Rect picture(0, 0, grey.cols, grey.rows);
+    region_ &= picture;
+    around_ = cv::Rect(region_.x - kAround_px, region_.y - kAround_px, region_.width + 2 * kAround_px,
+                       region_.height + 2 * kAround_px) & picture;
+    first_ = grey(around_).clone();
     sums_.assign(static_cast<std::size_t>(region_.area()), Eigen::Vector2d::Zero());
     squares_.assign(sums_.size(), 0);
-    displacement_ = cv::Mat::zeros(grey.size(), CV_32FC2);
+    displacement_ = cv::Mat::zeros(around_.size(), CV_32FC2);
   } else {
-    flow_->calc(first_, grey, displacement_);  // what it holds from the picture before is where the search starts
+    grey(around_).copyTo(now_);
+    flow_->calc(first_, now_, displacement_);  // what it holds from the picture before is where the search starts
   }
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   std::size_t i = 0;
   for (int v = region_.y; v < region_.y + region_.height; ++v)
     for (int u = region_.x; u < region_.x + region_.width; ++u, ++i) {
-      const cv::Vec2f& f = displacement_.at<cv::Vec2f>(v, u);
+      const cv::Vec2f& f = displacement_.at<cv::Vec2f>(v - around_.y, u - around_.x);
       const Eigen::Vector2d d(f[0], f[1]);
       sums_[i] += d;
       squares_[i] += d.squaredNorm();

@@ -26,7 +26,7 @@ class ImageMotion {
   double rms_px() const;
 
  private:
-  cv::Rect region_;
+  cv::Rect region_, around_;
   cv::Ptr<cv::DISOpticalFlow> flow_;
   cv::Mat first_, now_, displacement_;
   std::vector<Eigen::Vector2d> sums_;

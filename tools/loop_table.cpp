@@ -18,7 +18,22 @@ void put(Row& row, const std::optional<Eigen::Vector3d>& v) {
 }
 void put(Row& row, const Eigen::Vector2d& v) { row.insert(row.end(), {v.x(), v.y()}); }
 
-std::vector<std::string> column_names() {
+constexpr const char* LIVE_COLUMNS[] = {"frame/age_s",       "command/glass_to_command_s", "capture/device_s",
+                                        "capture/dequeued_s", "capture/decoded_s",          "capture/device_sequence",
+                                        "capture/flags",      "capture/missing",            "capture/skipped"};
+
+void put_live(Row& row, const servo::LoopRecord& r) {
+  row.insert(row.end(), {r.age_s, r.glass_to_command_s});
+  const auto& c = r.frame.capture;
+  if (!c) {  // a frame that was made up because none came
+    row.insert(row.end(), std::size(LIVE_COLUMNS) - 2, NAN);
+    return;
+  }
+  row.insert(row.end(), {c->device_s, c->dequeued_s, c->decoded_s, static_cast<double>(c->device_sequence),
+                         static_cast<double>(c->flags), static_cast<double>(c->missing), static_cast<double>(c->skipped)});
+}
+
+std::vector<std::string> column_names(bool live) {
   std::vector<std::string> names{"time_s", "frame/sequence", "frame/status", "track/state", "track/quality"};
   const auto triple = [&](const std::string& group, const std::string& unit) {
     for (const char* axis : {"x", "y", "z"}) names.push_back(group + "/" + axis + "_" + unit);
@@ -46,12 +61,13 @@ std::vector<std::string> column_names() {
                            "target/implausible", "force/felt_n", "force/wanted_n", "force/truth_n", "ecg/peak_s",
                            "timing/track_ms", "timing/chain_ms"})
     names.emplace_back(name);
+  if (live) names.insert(names.end(), std::begin(LIVE_COLUMNS), std::end(LIVE_COLUMNS));
   return names;
 }
 
 }  // namespace
 
-TimeTable make_loop_table(std::size_t rows) { return TimeTable(column_names(), rows); }
+TimeTable make_loop_table(std::size_t rows, bool live) { return TimeTable(column_names(live), rows); }
 
 void append(TimeTable& table, const servo::LoopRecord& r, const servo::TruthSample& truth) {
   const Eigen::Vector3d none = Eigen::Vector3d::Constant(NAN);
@@ -82,6 +98,7 @@ void append(TimeTable& table, const servo::LoopRecord& r, const servo::TruthSamp
                          r.guard.not_finite ? 1.0 : 0.0, r.stale ? 1.0 : 0.0, r.implausible ? 1.0 : 0.0,
                          r.encoders.force_n, r.force_wanted_n, truth.force_n.value_or(NAN), r.r_peak_s, r.track_ms,
                          r.chain_ms});
+  if (table.has(LIVE_COLUMNS[0])) put_live(row, r);
   table.append(row);
 }
 

@@ -12,8 +12,8 @@ struct TruthSample;
 namespace heartservo::tools {
 
 /// An empty table with the run's columns and room for `rows`. `measured/...` is the target as the loop measured it, so
-/// that the file is also a motion record.
-TimeTable make_loop_table(std::size_t rows);
+/// that the file is also a motion record. `live`: with the camera's stamps, and how old a frame was when it was used.
+TimeTable make_loop_table(std::size_t rows, bool live = false);
 
 void append(TimeTable& table, const servo::LoopRecord& record, const servo::TruthSample& truth);
 

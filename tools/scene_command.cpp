@@ -4,6 +4,7 @@
 #include "embedded.hpp"
 #include "sim/scene/scene.hpp"
 #include "tools/command.hpp"
+#include "tools/shipped.hpp"
 #include "tracking/settings/document.hpp"
 #include "tracking/settings/errors.hpp"
 
@@ -18,7 +19,7 @@ struct SceneOptions {
 
 // The camera file too: it is the other half of what a scene says.
 void check(const std::string& file) {
-  const sim::Scene scene = sim::load_scene(file);
+  const sim::Scene scene = sim::load_scene(shipped(file));
   if (!scene.camera.calibration.empty()) sim::camera_of(scene, 0, 0);
   fmt::print("{}: {}\n", file, scene.title.empty() ? "good" : scene.title);
 }

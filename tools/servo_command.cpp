@@ -6,6 +6,8 @@
 
 #include "servo/control/registry.hpp"
 #include "sim/robot/registry.hpp"
+#include "tools/capture/capture_summary.hpp"
+#include "tools/capture/live_timing.hpp"
 #include "tools/command.hpp"
 #include "tools/frequency_sweep.hpp"
 #include "tools/loop_table.hpp"
@@ -14,6 +16,7 @@
 #include "tools/servo_report.hpp"
 #include "tools/servo_run.hpp"
 #include "tools/servo_summary.hpp"
+#include "tracking/frames/v4l2/camera_options.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/planar/registry.hpp"
 #include "tracking/settings/errors.hpp"
@@ -30,6 +33,9 @@ struct ServoOptions {
   RecordedOptions recorded;
   std::string tracker, estimator, predictor, controller, robot, reference, point, sweep;
   double latency_ms = -1, settle_s = -1;
+  bool real_time = false, show = false;
+  bool no_video = false;
+  int igtl_port = 0;
 };
 
 template <class Registry>
@@ -76,6 +82,9 @@ ServoRequest configure(const ServoOptions& o) {
   request.label = "servo " + stem_of(o.run.source);
   request.settle_s = o.settle_s;
   request.quiet = o.run.quiet;
+  request.igtl_port = o.igtl_port;
+  request.real_time = o.real_time;
+  request.show = o.show;
   if (o.run.frames && !scene.is_recorded()) fit_settling(request, scene.frame_count(), scene.camera.frame_rate_hz);
   return request;
 }
@@ -86,7 +95,14 @@ int finish(const ServoOptions& o, RunFolder& folder, ServoOutcome& outcome, cons
   outcome.frames.write_csv(folder.file("frames.csv"));
   if (!outcome.stop_reason.empty()) tail(outcome.frames, kFlight_s).write_csv(folder.file("flight.csv"));
   const TimeTable plotted = with_motion(outcome.frames);
-  Report report = servo_report(outcome.summary, plotted, outcome.pictures, config_text(outcome.scene, "servo"));
+  const TimeTable spectrum = servo_spectrum(plotted, outcome.summary);
+  Report report =
+      servo_report(outcome.summary, plotted, spectrum, outcome.pictures, config_text(outcome.scene, "servo"));
+  if (outcome.summary.contains("capture")) {
+    report.tables.push_back(capture_table(outcome.summary["capture"]));
+    report.tables.push_back(event_table(outcome.summary["capture"]));
+  }
+  report.video = outcome.video;
   if (extra != nullptr) report.tables.insert(report.tables.begin(), *extra);
   finish_run(folder, report, o.run, text);
   if (!outcome.stop_reason.empty() && extra == nullptr) {
@@ -94,6 +110,8 @@ int finish(const ServoOptions& o, RunFolder& folder, ServoOutcome& outcome, cons
                folder.file("flight.csv").string());
     return SAFETY_STOP;
   }
+  if (!outcome.device_failure.empty())
+    throw DeviceError(fmt::format("{}; the frames before are in {}", outcome.device_failure, folder.path().string()));
   return outcome.interrupted ? INTERRUPTED : DONE;
 }
 
@@ -107,9 +125,14 @@ int run_servo(const ServoOptions& o) {
   engines.controller = controllers.front();
   sim::require_valid(request.scene, o.run.source);
   std::optional<RunFolder> folder;
-  request.before_run = [&] {
+  request.before_run = [&]() -> std::filesystem::path {
     if (!folder) folder.emplace(run_path(o.run, "servo"));
+    const bool several = !o.sweep.empty() || predictors.size() * controllers.size() > 1;
+    const bool live = tracking::v4l2::is_camera(request.scene.recording.source);  // a film would take the loop's time
+    return several || live || o.no_video ? std::filesystem::path() : folder->file("video.webm");
   };
+  if (tracking::v4l2::is_camera(request.scene.recording.source) && predictors.size() * controllers.size() > 1)
+    throw ConfigError("a camera's frames come only once: give one predictor and one controller");
   if (!o.sweep.empty()) {
     if (predictors.size() > 1) throw ConfigError("--sweep-frequency compares control laws; give one predictor");
     const auto [low, high] = parse_sweep(o.sweep);
@@ -129,7 +152,10 @@ int run_servo(const ServoOptions& o) {
                   &table);
   }
   ServoOutcome outcome = run_loop(request);
-  return finish(o, *folder, outcome, residual_table(outcome.summary), nullptr);
+  std::string text = residual_table(outcome.summary);
+  if (outcome.summary.contains("live"))
+    text += "\n" + live_text(outcome.summary["live"]) + "\n" + capture_text(outcome.summary["capture"]);
+  return finish(o, *folder, outcome, text, nullptr);
 }
 
 }  // namespace
@@ -138,7 +164,7 @@ Command add_servo_command(CLI::App& program) {
   auto options = std::make_shared<ServoOptions>();
   ServoOptions& o = *options;
   CLI::App* app = program.add_subcommand("servo", "close the loop, print the residual table, leave a run folder");
-  add_run_options(*app, o.run, "scene (.yaml), image folder, printf pattern or video");
+  add_run_options(*app, o.run, "scene (.yaml), image folder, printf pattern, video, recording or v4l2:/dev/video0");
   add_recording_options(*app, o.recorded);
   app->add_option("--depth-mm", o.recorded.depth_mm, "assumed distance of the region in recorded frames")
       ->check(finite(1, 10000));
@@ -160,6 +186,13 @@ Command add_servo_command(CLI::App& program) {
                   "residual and margins against a sine target of frequencies from LOW to HIGH, in Hz")
       ->type_name("LOW:HIGH");
   app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(finite(0, 1e4));
+  app->add_option("--igtl", o.igtl_port, "send target, tip and picture to OpenIGTLink clients on this port (18944)")
+      ->check(CLI::Range(1, 65535))
+      ->type_name("PORT");
+  app->add_flag("--show", o.show, "the picture in a window while it runs (X11)");
+  app->add_flag("--real-time", o.real_time,
+                "on a camera: real-time scheduling where allowed, memory locked, no pictures and no progress");
+  app->add_flag("--no-video", o.no_video, "no short film of the run in the report");
   app->add_flag("--list", o.run.list, "list the engines and exit");
   app->footer(
       "Examples:\n  heartservo servo scenes/pig_2007.yaml\n"

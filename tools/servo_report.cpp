@@ -2,11 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "servo/motion/spectrum.hpp"
 #include "tools/servo_summary.hpp"
 
 namespace heartservo::tools {
 
 namespace {
+
+constexpr std::size_t kLeastRows = 256;             // for a spectrum
+constexpr double kSegment_s = 8, kHighest_hz = 20;  // of it
 
 using nlohmann::json;
 
@@ -80,8 +87,36 @@ ReportTable run_rows(const json& j) {
 
 }  // namespace
 
-Report servo_report(const json& j, const TimeTable& table, std::vector<ReportPicture> pictures,
-                    const std::string& config_yaml) {
+TimeTable servo_spectrum(const TimeTable& table, const json& j) {
+  const double rate = j["frame_rate_hz"];
+  std::vector<std::string> names{"frequency_hz"};
+  std::vector<servo::Spectrum> spectra;
+  const bool metric = !j["residual"].is_null();
+  for (const char* group : {"motion", "residual"}) {
+    servo::Spectrum sum;
+    for (const char* axis : {"x_m", "y_m", "z_m"}) {
+      std::vector<double> series;
+      if (metric)
+        for (const double v : table.column(fmt::format("{}/{}", group, axis)))
+          if (std::isfinite(v)) series.push_back(v);
+      if (series.size() < kLeastRows || !(rate > 0)) return TimeTable({"frequency_hz"});
+      const servo::Spectrum one = servo::welch(series, rate, kSegment_s);
+      if (sum.density.empty())
+        sum = one;
+      else
+        for (std::size_t i = 0; i < sum.density.size(); ++i) sum.density[i] += one.density[i];
+    }
+    names.push_back(fmt::format("{}/m2_hz", group));
+    spectra.push_back(std::move(sum));
+  }
+  TimeTable result(names, spectra[0].density.size());
+  for (std::size_t i = 0; i < spectra[0].density.size() && spectra[0].frequency_hz(i) <= kHighest_hz; ++i)
+    result.append({spectra[0].frequency_hz(i), spectra[0].density[i], spectra[1].density[i]});
+  return result;
+}
+
+Report servo_report(const json& j, const TimeTable& table, const TimeTable& spectrum,
+                    std::vector<ReportPicture> pictures, const std::string& config_yaml) {
   Report report;
   const bool metric = !j["residual"].is_null();
   report.title = "servo " + j["scene"].get<std::string>();
@@ -94,14 +129,27 @@ Report servo_report(const json& j, const TimeTable& table, std::vector<ReportPic
   report.headline_number = left;
   report.headline_unit = unit + " RMS residual";
   if (!metric)
-    report.notices.push_back("Recorded frames: no 3D truth. The pixel residual is scored against: " +
-                             reference_text(j["residual_px"]) +
-                             (j["estimator"] == "assumed_depth" ? ". Depth is assumed." : "."));
+    report.notices.push_back(
+        "Recorded frames: no 3D truth. The pixel residual is scored against: " + reference_text(j["residual_px"]) +
+        (j["estimator"] == "assumed_depth" ? ". Depth is assumed." : "."));
   if (const int lost = j["tracking"]["lost_frames"]; lost > 0)
     report.notices.push_back(fmt::format("The region was lost in {} of {} frames.", lost, j["frames"].get<int>()));
   if (!j["stop_reason"].is_null()) report.notices.push_back("Safety stop: " + j["stop_reason"].get<std::string>());
   if (j["interrupted"].get<bool>()) report.notices.push_back("Ended early by Ctrl-C.");
   report.plots = metric ? metric_plots() : pixel_plots();
+  if (spectrum.rows() > 0) {
+    ReportPlot density{"Spectra of the motion and of what is left",
+                       "mm²/Hz",
+                       {{"heart", "motion/m2_hz"}, {"residual", "residual/m2_hz"}},
+                       1e6,
+                       "Power spectral density, the three axes together (Welch); where the residual lies above the "
+                       "heart, the loop amplifies.",
+                       &spectrum};
+    double highest = 0;
+    for (const double d : spectrum.column("motion/m2_hz")) highest = std::max(highest, d);
+    density.log_from = 1e6 * highest * 1e-8;
+    report.plots.push_back(density);
+  }
   report.plots.push_back(
       {"Tracking quality", "%", {{"target", "track/quality"}, {"tool marker", "marker/quality"}}, 100});
   report.plots.push_back(

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
+#include <optional>
 
 #include "servo/loop/loop.hpp"
 #include "servo/loop/score.hpp"
@@ -11,17 +12,26 @@
 #include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
 #include "tools/album.hpp"
+#include "tools/capture/capture_summary.hpp"
+#include "tools/capture/live_timing.hpp"
+#include "tools/capture/outline.hpp"
+#include "tools/capture/real_time.hpp"
 #include "tools/command.hpp"
+#include "tools/igtl/igtl_stream.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/loop_table.hpp"
 #include "tools/overlay.hpp"
 #include "tools/progress.hpp"
 #include "tools/servo_summary.hpp"
+#include "tools/short_video.hpp"
+#include "tracking/frames/live_source.hpp"
 #include "tracking/settings/errors.hpp"
 
 namespace heartservo::tools {
 
 namespace {
+
+using nlohmann::json;
 
 constexpr double kMostUnscored = 0.9;  // share of a run that may be spent on settling
 
@@ -30,6 +40,14 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 void refuse_hopeless(const servo::LoopOptions& options, const sim::Scene& scene, const servo::ToolRobot& robot) {
   const auto reasons = servo::reasons_to_refuse(options, scene.engines.controller, robot.data());
   if (!reasons.empty()) throw ConfigError(fmt::format("the run is refused: {}", fmt::join(reasons, "; ")));
+}
+
+std::string film_caption(const json& still) {
+  return fmt::format(
+      "From {:.1f} s on: the endoscope's picture (ring: goal, cross: tip), and the view in which the region stands "
+      "still. By "
+      "optical flow the region moves by {} px RMS on the left and by {} px on the right.",
+      still["from_s"].get<double>(), number(still["raw_px"], 2), number(still["still_px"], 2));
 }
 
 ReportPicture overlay(const servo::LoopRecord& r, const servo::TruthSample& truth, tracking::TargetTracker& tracker) {
@@ -41,6 +59,24 @@ ReportPicture overlay(const servo::LoopRecord& r, const servo::TruthSample& trut
   draw_goal_and_tip(picture.bgr, truth.goal_px, truth.tip_px);
   picture.keys.push_back(goal_and_tip_key());
   return picture;
+}
+
+void publish(IgtlStream& stream, const servo::LoopRecord& r) {
+  IgtlSnapshot snapshot;
+  snapshot.time_s = r.frame.time_s;
+  snapshot.has_target = r.target.state != tracking::TrackState::LOST;
+  snapshot.T_camera_target = r.target.T_camera_target;
+  snapshot.T_camera_tip.translation() = r.tip;
+  snapshot.grey = r.frame.grey;
+  stream.publish(snapshot);
+}
+
+// The picture has the tool in it already.
+void show(Window& window, const servo::LoopRecord& record) {
+  if (record.frame.grey.empty()) return;
+  std::vector<Window::Outline> outlines;
+  for (const auto* track : {&record.track, &record.marker_track}) add_outline(*track, outlines);
+  window.show(record.frame.grey, outlines);
 }
 
 }  // namespace
@@ -60,7 +96,10 @@ void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_h
 
 ServoOutcome run_loop(ServoRequest request) {
   sim::Scene& scene = request.scene;
+  const RealTime real_time(request.real_time);  // before the table: a camera's thread inherits it
   const auto table = sim::make_table(scene);
+  tracking::LiveSource* live = table->frames().live();
+  if (request.real_time && !live) throw ConfigError("--real-time is for a camera: servo v4l2:/dev/video0");
   const servo::LoopOptions loop_options = sim::loop_options(scene, *table);
   refuse_hopeless(loop_options, scene, table->robot());
   servo::LoopStages stages = sim::make_stages(scene, *table);
@@ -72,27 +111,48 @@ ServoOutcome run_loop(ServoRequest request) {
 
   const std::size_t expected = table->frames().frame_count().value_or(0);
   if (scene.is_recorded() && expected > 0) fit_settling(request, expected, loop_options.frame_rate_hz);
-  if (request.before_run) request.before_run();
+  std::filesystem::path film;
+  if (request.before_run) film = request.before_run();
   ServoOutcome outcome;
-  outcome.frames = make_loop_table(rows_ahead(expected));
+  outcome.frames = make_loop_table(rows_ahead(expected), live != nullptr);
+  LiveTiming live_timing(loop_options.frame_rate_hz, rows_ahead(expected));
   servo::Score score(scene.settle_s, 1 / loop_options.frame_rate_hz);
   score.reserve(rows_ahead(expected));
   Album album(expected, [](double px) { return fmt::format("{:.1f} px from the goal", px); });
+  std::optional<ShortVideo> video;
+  std::optional<IgtlStream> igtl;
+  if (request.igtl_port > 0) igtl.emplace(request.igtl_port);
+  std::optional<Window> window;
+  if (request.show) window.emplace("heartservo: " + request.source, table->frames().size());
   ServoRunFacts facts;
-  const double begin = now_s();
+  double looped_s = 0;  // in the loop itself: not what is made for people to look at
   {
     const Interrupt interrupt;
-    Progress progress(request.label, expected, request.quiet);
+    Progress progress(request.label, expected, request.quiet || request.real_time);
     servo::LoopRecord record;
-    while (!(facts.interrupted = interrupt.requested()) && loop.step(record)) {
+    const auto step = [&] {
+      const double begin = now_s();
+      const bool more = loop.step(record);
+      looped_s += now_s() - begin;
+      return more;
+    };
+    while (!(facts.interrupted = interrupt.requested()) && step()) {
+      if (igtl) publish(*igtl, record);
       const servo::TruthSample truth = table->truth(record);
       score.add(record, truth);
       append(outcome.frames, record, truth);
+      if (live) live_timing.add(record, now_s());
+      if (window) show(*window, record);
+      if (request.real_time) continue;
       const double off_px = record.frame.time_s < scene.settle_s ? NAN : (truth.tip_px - truth.goal_px).norm();
       if (record.frame.status == tracking::FrameStatus::OK)
         album.look_at({outcome.frames.rows() - 1, record.frame.time_s, off_px, "",
                        record.track.state == tracking::TrackState::LOST},
                       [&] { return overlay(record, truth, tracker); });
+      if (!film.empty() && !video)
+        video.emplace(film, scene.settle_s, loop_options.frame_rate_hz, picked.target, record.frame.grey.size());
+      if (video && video->wants(record.frame))
+        video->add(record.frame, overlay(record, truth, tracker).bgr, tracker, record.track);
       progress.update(outcome.frames.rows());
     }
   }
@@ -103,8 +163,17 @@ ServoOutcome run_loop(ServoRequest request) {
   facts.frame_rate_hz = loop_options.frame_rate_hz;
   facts.stop_reason = loop.stop_reason();
   facts.real_time_factor =
-      static_cast<double>(outcome.frames.rows()) / loop_options.frame_rate_hz / std::max(1e-9, now_s() - begin);
+      static_cast<double>(outcome.frames.rows()) / loop_options.frame_rate_hz / std::max(1e-9, looped_s);
   outcome.summary = servo_summary(score.summary(), scene, facts);
+  if (live) {
+    outcome.summary["capture"] = json_of(live->report());
+    outcome.summary["live"] = live_timing.summary();
+    outcome.summary["live"]["real_time"] = real_time.granted();
+    outcome.device_failure = live->failure();
+  }
+  if (video) outcome.summary["still_view"] = video->finish();
+  if (video && !outcome.summary["still_view"].is_null())
+    outcome.video = {film_caption(outcome.summary["still_view"]), film};
   outcome.pictures = album.pictures();
   outcome.stop_reason = facts.stop_reason;
   outcome.interrupted = facts.interrupted;

@@ -122,6 +122,9 @@ std::string residual_table(const json& j) {
   row("motion", {number(j["motion_px"]["rms"], 2)});
   row("residual", {number(px["rms"], 2), number(px["p95"], 2), number(px["max"], 2)});
   t += fmt::format("{:<22}{:>10}\n", "scored against", reference_text(px));
+  if (j.contains("still_view") && !j["still_view"].is_null())
+    t += fmt::format("\nstill view: the region moves by {} px in the picture, {} px in the still one\n",
+                     number(j["still_view"]["raw_px"], 2), number(j["still_view"]["still_px"], 2));
   if (j.contains("force"))
     t += fmt::format("\nforce {} N wanted: error {} N RMS, {} N at most; peak {} N; {} touches\n",
                      number(j["force"]["wanted_n"], 2), number(j["force"]["error_rms_n"], 3),

@@ -16,6 +16,7 @@
 #include "tools/progress.hpp"
 #include "tools/run_folder.hpp"
 #include "tools/servo_summary.hpp"
+#include "tools/short_video.hpp"
 #include "tracking/planar/registry.hpp"
 #include "tracking/settings/errors.hpp"
 #include "tracking/still/still_view.hpp"
@@ -81,7 +82,8 @@ json summary_of(const StabiliseOptions& o, const sim::Scene& scene, const Run& r
   const auto times = [&](const char* column) {
     const auto t = run.table.column(column);
     std::vector<double> v(t.begin(), t.end());
-    return json{{"p50", servo::percentile(v, 50)}, {"p99", servo::percentile(v, 99)}, {"max", servo::percentile(v, 100)}};
+    return json{
+        {"p50", servo::percentile(v, 50)}, {"p99", servo::percentile(v, 99)}, {"max", servo::percentile(v, 100)}};
   };
   return {{"command", "stabilise"},
           {"version", HEARTSERVO_VERSION},
@@ -105,10 +107,11 @@ Report report_of(const json& j, const Run& run, std::vector<ReportPicture> pictu
   report.headline_number = number(j["reduction_percent"], 1);
   report.headline_unit = "% of the image motion removed";
   if (run.lost > 0) report.notices.push_back(fmt::format("The region was lost in {} frames.", run.lost));
-  report.plots = {{"Place of the region, by optical flow from the first picture",
-                   "px",
-                   {{"raw u", "raw/u_px"}, {"raw v", "raw/v_px"}, {"still u", "still/u_px"}, {"still v", "still/v_px"}}},
-                  {"Computing time", "ms", {{"tracker", "timing/track_ms"}, {"still view", "timing/still_ms"}}}};
+  report.plots = {
+      {"Place of the region, by optical flow from the first picture",
+       "px",
+       {{"raw u", "raw/u_px"}, {"raw v", "raw/v_px"}, {"still u", "still/u_px"}, {"still v", "still/v_px"}}},
+      {"Computing time", "ms", {{"tracker", "timing/track_ms"}, {"still view", "timing/still_ms"}}}};
   report.pictures = std::move(pictures);
   report.tables = {{"Image motion of the region, RMS",
                     {"", "px"},
@@ -137,6 +140,7 @@ int run_stabilise(const StabiliseOptions& o) {
   tracking::StillView view(region, frames.size());
   Album album(expected, [](double px) { return fmt::format("{:.2f} px from its place", px); });
   RunFolder folder(run_path(o.run, "stabilise"));
+  ShortVideo film(folder.file("film.webm"), 0, frames.frame_rate_hz(), region, frames.size());
   Video video(folder.file("video.mkv"), frames.frame_rate_hz(), frames.size());
   {
     const Interrupt interrupt;
@@ -153,22 +157,33 @@ int run_stabilise(const StabiliseOptions& o) {
       const Eigen::Vector2d raw = run.raw.add(frame.grey), left = run.still.add(grey);
       const cv::Mat bgr = bgr_of(still);
       video.add(bgr);
+      if (film.wants(frame)) {
+        cv::Mat drawn = canvas_of(frame);
+        draw_region(drawn, track);
+        film.add(frame, drawn, *tracker, track);
+      }
       run.table.append({frame.time_s, static_cast<double>(track.state), track.quality, raw.x(), raw.y(), left.x(),
                         left.y(), tracked - begin, done - tracked});
-      album.look_at({run.table.rows() - 1, frame.time_s, left.norm(), "", track.state == TrackState::LOST},
-                    [&] { return ReportPicture{"", bgr.clone(), {}}; });
+      album.look_at({run.table.rows() - 1, frame.time_s, left.norm(), "", track.state == TrackState::LOST}, [&] {
+        return ReportPicture{"", bgr.clone(), {}};
+      });
       progress.update(run.table.rows());
     } while (!(run.interrupted = interrupt.requested()) && frames.next(frame));
   }
   const json j = summary_of(o, scene, run, frames.frame_rate_hz());
   run.table.write_csv(folder.file("frames.csv"));
-  finish_run(folder, report_of(j, run, album.pictures(), config_text(scene, "stabilise")), o.run,
-             fmt::format("{}: {} frames, {}, lost {}\n\nimage motion of the region (RMS, optical flow)\n"
-                         "  raw    {:>8} px\n  still  {:>8} px\n  removed {:>7} %\nstill view {} ms (p50), {} ms (p99)\n",
-                         j["source"].get<std::string>(), run.table.rows(), scene.engines.tracker, run.lost,
-                         number(j["motion_px"]["raw"], 3), number(j["motion_px"]["still"], 3),
-                         number(j["reduction_percent"], 1), number(j["timing"]["still_ms"]["p50"], 2),
-                         number(j["timing"]["still_ms"]["p99"], 2)));
+  Report report = report_of(j, run, album.pictures(), config_text(scene, "stabilise"));
+  if (!film.finish().is_null())
+    report.video = {"The endoscope's picture, and the view in which the region stands still.",
+                    folder.file("film.webm")};
+  finish_run(
+      folder, report, o.run,
+      fmt::format("{}: {} frames, {}, lost {}\n\nimage motion of the region (RMS, optical flow)\n"
+                  "  raw    {:>8} px\n  still  {:>8} px\n  removed {:>7} %\nstill view {} ms (p50), {} ms (p99)\n",
+                  j["source"].get<std::string>(), run.table.rows(), scene.engines.tracker, run.lost,
+                  number(j["motion_px"]["raw"], 3), number(j["motion_px"]["still"], 3),
+                  number(j["reduction_percent"], 1), number(j["timing"]["still_ms"]["p50"], 2),
+                  number(j["timing"]["still_ms"]["p99"], 2)));
   return run.interrupted ? INTERRUPTED : DONE;
 }
 

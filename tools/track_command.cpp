@@ -10,6 +10,8 @@
 #include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
 #include "tools/artificial.hpp"
+#include "tools/capture/capture_summary.hpp"
+#include "tools/capture/outline.hpp"
 #include "tools/command.hpp"
 #include "tools/corner_truth.hpp"
 #include "tools/depth_rail.hpp"
@@ -43,6 +45,7 @@ struct TrackOptions {
   double square_mm = 0;
   std::string truth, points, point;
   std::string estimator, landmark;
+  bool show = false;
 };
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -206,7 +209,7 @@ void start_lanes(const TrackOptions& o, const Tracked& tracked, const tracking::
     lanes.emplace_back(lane_name(start, name, trackers.size() > 1),
                        tracking::trackers().make(name, lens, tracked.scene.tracking),
                        estimator_for(o, tracked, start.number > 0 ? start.number - 1 : 0), truth,
-                       rows_ahead(tracked.table->frames().frame_count().value_or(0)));
+                       rows_ahead(tracked.table->frames().frame_count().value_or(0)), tracked.table->frames().live());
     if (const std::string why = lanes.back().start(frame, start); !why.empty())
       throw ConfigError(fmt::format("{}: {} cannot be tracked by {}: {}", o.run.source,
                                     start.number > 0 ? fmt::format("region {}", start.number) : "the region", name,
@@ -241,8 +244,8 @@ std::optional<sim::Scene> depth_rail_of(const TrackOptions& o) {
   return scene;
 }
 
-// Lanes lie region by region. Regions go to as many cores as there are; trackers that are compared on one region come one
-// after the other, so that they do not take each other's time. ViSP's are not made for threads.
+// Lanes lie region by region. Regions go to as many cores as there are; trackers that are compared on one region come
+// one after the other, so that they do not take each other's time. ViSP's are not made for threads.
 void follow(const tracking::Frame& frame, const std::vector<TrackTruth>& truths, bool threaded,
             std::vector<TrackLane>& lanes) {
   const std::size_t regions = truths.size(), of_region = lanes.size() / regions;
@@ -256,6 +259,12 @@ void follow(const tracking::Frame& frame, const std::vector<TrackTruth>& truths,
     for (std::size_t region = 0; region < regions; ++region) follow_region(region);
 }
 
+void show(Window& window, const tracking::Frame& frame, const std::vector<TrackLane>& lanes) {
+  std::vector<Window::Outline> outlines;
+  for (const auto& lane : lanes) add_outline(lane.track(), outlines);
+  window.show(frame.grey, outlines);
+}
+
 int run_track(TrackOptions o) {
   if (o.run.list) return list_trackers();
   if (const auto scene = depth_rail_of(o)) return run_depth_rail(o.run, *scene);
@@ -265,7 +274,8 @@ int run_track(TrackOptions o) {
   const CornerTruth* truth = truth_file ? &*truth_file : nullptr;
   const Tracked tracked = opened(o, truth);
   const auto names = chosen_trackers(o, tracked.scene);  // throws before anything is read
-  const bool threaded = std::none_of(names.begin(), names.end(), [](const auto& name) { return name.starts_with("visp_"); });
+  const bool threaded =
+      std::none_of(names.begin(), names.end(), [](const auto& name) { return name.starts_with("visp_"); });
   tracking::FrameSource& frames = tracked.table->frames();
   // Without a calibration the homography stays on the pixels: a guessed lens would only add its own error.
   const bool calibrated = !o.artificial && (!tracked.scene.is_recorded() || !tracked.scene.camera.calibration.empty());
@@ -286,6 +296,8 @@ int run_track(TrackOptions o) {
   }
   const TruthSource& source = sources.front();
 
+  std::optional<Window> window;
+  if (o.show) window.emplace("heartservo: " + o.run.source, frames.size());
   RunFolder folder(run_path(o.run, "track"));
   const std::size_t expected = frames.frame_count().value_or(0);
   TrackAlbum album(expected, source.kind, frame);
@@ -301,6 +313,7 @@ int run_track(TrackOptions o) {
       const TrackTruth& known = truths.front();
       with_truth += known.corners.has_value() || known.point.allFinite();
       album.look_at(frame, lanes, known);
+      if (window) show(*window, frame, lanes);
       progress.update(++count);
     } while (!(interrupted = interrupt.requested()) && frames.next(frame));
   }
@@ -311,6 +324,8 @@ int run_track(TrackOptions o) {
   if (!source.reference.empty()) summary["reference"] = source.reference;
   if (source.kind.point) summary["point"] = *source.kind.point;
   for (const auto& lane : lanes) summary["trackers"].push_back(lane.summary());
+  tracking::LiveSource* live = frames.live();
+  if (live) summary["capture"] = json_of(live->report());
   std::string text =
       fmt::format("{}: {} frames\n\n{}", o.run.source, count, terminal_text(tracker_table(summary), false));
   std::vector<ReportTable> paper;
@@ -321,10 +336,13 @@ int run_track(TrackOptions o) {
   }
   write_tables(folder, lanes);
   const TimeTable plotted = side_by_side(lanes);
+  if (live) text += "\n" + capture_text(summary["capture"]);
   finish_run(folder, track_report(summary, plotted, paper, album.pictures(lanes), tracked.config), o.run, text);
   if (!source.reference.empty() && with_truth == 0)
     fmt::print(stderr, "heartservo: {}: no row has the time of a frame, so no error is known; check --frame-rate-hz\n",
                source.reference);
+  if (live && !live->failure().empty())
+    throw DeviceError(fmt::format("{}; the frames before are in {}", live->failure(), folder.path().string()));
   return interrupted ? INTERRUPTED : DONE;
 }
 
@@ -334,7 +352,7 @@ Command add_track_command(CLI::App& program) {
   auto options = std::make_shared<TrackOptions>();
   TrackOptions& o = *options;
   CLI::App* app = program.add_subcommand("track", "follow a region; several trackers side by side");
-  add_run_options(*app, o.run, "image folder, printf pattern, video or scene (.yaml)");
+  add_run_options(*app, o.run, "image folder, printf pattern, video, recording, v4l2:/dev/video0 or scene (.yaml)");
   add_recording_options(*app, o.recorded, true);
   add_artificial_options(*app, o.artificial);
   app->add_option("--tracker", o.trackers, "trackers, separated by commas, or 'all'")->delimiter(',');
@@ -354,6 +372,7 @@ Command add_track_command(CLI::App& program) {
       ->type_name("FILE");
   app->add_option("--point", o.point, "which of them; default: the one inside the region nearest to its centre")
       ->type_name("NAME");
+  app->add_flag("--show", o.show, "the picture in a window while it runs (X11)");
   app->add_flag("--list", o.run.list, "list the trackers and exit");
   app->footer(
       "Examples:\n  heartservo track frames/ --roi 150,130,60,60\n"

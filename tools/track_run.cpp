@@ -17,7 +17,7 @@ namespace {
 
 Eigen::Vector2d nowhere() { return Eigen::Vector2d::Constant(NAN); }
 
-std::vector<std::string> column_names(const TruthKind& truth, bool metric) {
+std::vector<std::string> column_names(const TruthKind& truth, bool metric, bool live) {
   std::vector<std::string> names{"time_s", "frame/sequence", "track/state", "track/quality"};
   const auto place = [&](const std::string& group) {
     for (const char* axis : {"/u_px", "/v_px"}) names.push_back(group + axis);
@@ -41,6 +41,8 @@ std::vector<std::string> column_names(const TruthKind& truth, bool metric) {
       names.emplace_back(name);
   if (metric && truth.metric)
     for (const char* name : {"truth/x_m", "truth/y_m", "truth/z_m"}) names.emplace_back(name);
+  if (live)
+    for (const char* name : {"frame/age_s", "capture/device_sequence", "capture/skipped"}) names.emplace_back(name);
   return names;
 }
 
@@ -54,12 +56,14 @@ json extent(const std::vector<double>& values) {
 }  // namespace
 
 TrackLane::TrackLane(std::string name, std::unique_ptr<tracking::TargetTracker> tracker,
-                     std::unique_ptr<tracking::TargetEstimator> estimator, const TruthKind& truth, std::size_t frames)
+                     std::unique_ptr<tracking::TargetEstimator> estimator, const TruthKind& truth, std::size_t frames,
+                     const tracking::LiveSource* live)
     : name_(std::move(name)),
       tracker_(std::move(tracker)),
       estimator_(std::move(estimator)),
+      live_(live),
       truth_(truth),
-      table_(column_names(truth, estimator_ != nullptr), frames),
+      table_(column_names(truth, estimator_ != nullptr, live != nullptr), frames),
       score_(truth) {}
 
 std::string TrackLane::start(const tracking::Frame& frame, const TrackStart& start) {
@@ -68,7 +72,7 @@ std::string TrackLane::start(const tracking::Frame& frame, const TrackStart& sta
 }
 
 const tracking::Track& TrackLane::follow(const tracking::Frame& frame, const TrackTruth& truth, double (*now_s)()) {
-  const double begin = now_s();
+  const double age = live_ ? live_->now_s() - frame.time_s : NAN, begin = now_s();
   track_ = tracker_->track(frame);
   const double ms = 1e3 * (now_s() - begin);
   const bool lost = track_.state == TrackState::LOST;
@@ -95,6 +99,9 @@ const tracking::Track& TrackLane::follow(const tracking::Frame& frame, const Tra
     v_px_.push_back(moved.y());
   }
   if (estimator_) measure(frame, truth);
+  if (live_)
+    row_.insert(row_.end(), {age, frame.capture ? static_cast<double>(frame.capture->device_sequence) : NAN,
+                             frame.capture ? static_cast<double>(frame.capture->skipped) : NAN});
   table_.append(row_);
   return track_;
 }

@@ -6,6 +6,7 @@
 
 #include "tools/time_table.hpp"
 #include "tools/track_score.hpp"
+#include "tracking/frames/live_source.hpp"
 #include "tracking/landmark/target_estimator.hpp"
 #include "tracking/planar/target_tracker.hpp"
 
@@ -23,8 +24,10 @@ struct TrackStart {
 class TrackLane {
  public:
   /// `estimator` may be null: no metric pose. `truth`: what follow() will be given.
+  /// `live`: the camera, null for recorded frames; must outlive this.
   TrackLane(std::string name, std::unique_ptr<tracking::TargetTracker> tracker,
-            std::unique_ptr<tracking::TargetEstimator> estimator, const TruthKind& truth, std::size_t frames);
+            std::unique_ptr<tracking::TargetEstimator> estimator, const TruthKind& truth, std::size_t frames,
+            const tracking::LiveSource* live = nullptr);
 
   const std::string& name() const { return name_; }
 
@@ -51,7 +54,8 @@ class TrackLane {
   /// Its CSV: time_s, frame/sequence, track/state, track/quality, track/corner0..3, target (the centre of the region),
   /// displacement (of the target since the first frame), error_px (of the corners), timing/track_ms; with the truth
   /// that there is: truth/corner0..3; point, truth/point, point/error_px; and when metric: measured (with sigma/z_m), pose,
-  /// and truth where known. A LOST frame has no place.
+  /// and truth where known; of a camera: frame/age_s (when tracking began), capture/device_sequence, capture/skipped.
+  /// A LOST frame has no place.
   const TimeTable& table() const { return table_; }
 
  private:
@@ -60,6 +64,7 @@ class TrackLane {
   std::string name_;
   std::unique_ptr<tracking::TargetTracker> tracker_;
   std::unique_ptr<tracking::TargetEstimator> estimator_;
+  const tracking::LiveSource* live_;
   TruthKind truth_;
   TimeTable table_;
   TrackScore score_;

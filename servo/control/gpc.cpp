@@ -1,7 +1,7 @@
 // Generalised predictive control with a repetitive disturbance (Clarke, Mohtadi, Tuffs, Automatica 1987; Ginhoux,
-// Gangloff, de Mathelin, Soler, Arenas Sanchez, Marescaux: Active filtering of physiological motion in robotized surgery
-// using predictive control, IEEE T-RO 2005). The goal's motion is the disturbance; it is foreseen from its own last
-// period (repeated_path.hpp) and not by the loop's predictor, which only serves until a period is known. Then
+// Gangloff, de Mathelin, Soler, Arenas Sanchez, Marescaux: Active filtering of physiological motion in robotized
+// surgery using predictive control, IEEE T-RO 2005). The goal's motion is the disturbance; it is foreseen from its own
+// last period (repeated_path.hpp) and not by the loop's predictor, which only serves until a period is known. Then
 //
 //   minimise  sum_{k=1}^{N} |p_k - w_k|^2 + smoothing T^2 sum_{j < moves} |u_j - u_{j-1}|^2
 //
@@ -40,7 +40,9 @@ class Gpc final : public ControlLaw {
     wanted_ = -plant_.free(state.robot).topRows(horizon_);
     for (int k = 0; k < horizon_; ++k) {
       const double ahead = state.acts_at_s + (k + 1) * state.period_s - state.time_s;
-      wanted_.row(k) += (path_.known() ? Eigen::Vector3d(path_.at(ahead) + state.shift(k + 1)) : state.goal(k + 1).position).transpose();
+      wanted_.row(k) +=
+          (path_.known() ? Eigen::Vector3d(path_.at(ahead) + state.shift(k + 1)) : state.goal(k + 1).position)
+              .transpose();
     }
     return (gains_.lazyProduct(wanted_)).transpose() + last_gain_ * state.last_velocity;
   }

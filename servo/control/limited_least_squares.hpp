@@ -4,7 +4,8 @@
 //
 // where S takes differences and u_last is the velocity before the first move. Without active limits the solution is one
 // product; else the alternating direction method of multipliers (Boyd et al. 2011, section 5; the splitting of OSQP,
-// Stellato et al. 2020, and its balancing of the penalty) with balls as the sets, started from the last solution. Nothing is allocated after the making.
+// Stellato et al. 2020, and its balancing of the penalty) with balls as the sets, started from the last solution.
+// Nothing is allocated after the making.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 

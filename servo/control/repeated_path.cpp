@@ -17,7 +17,8 @@ constexpr int kAnew = 64;       // and every so many samples everywhere
 RepeatedPath::RepeatedPath(double sample_s, double shortest_s, double longest_s)
     : sample_s_(sample_s),
       shortest_(std::max<std::size_t>(6, static_cast<std::size_t>(shortest_s / sample_s))),
-      longest_(std::clamp<std::size_t>(static_cast<std::size_t>(longest_s / sample_s), shortest_ + 4, kMemory / 2 - 200)),
+      longest_(
+          std::clamp<std::size_t>(static_cast<std::size_t>(longest_s / sample_s), shortest_ + 4, kMemory / 2 - 200)),
       way_(std::max<std::size_t>(1, static_cast<std::size_t>(kWay_s / sample_s))),
       window_(std::max<std::size_t>(4, static_cast<std::size_t>(kWindow_s / sample_s))) {
   samples_.fill(Eigen::Vector3d::Zero());
@@ -67,9 +68,10 @@ void RepeatedPath::find_period() {
   low = std::max(shortest_, static_cast<std::size_t>(period_ * (1 - kNear)));
   high = std::min(longest_, static_cast<std::size_t>(period_ * (1 + kNear)));
   for (std::size_t n = low; n <= high; ++n) cost_[n] = unlikeness(n, window_);
-  const std::size_t n = static_cast<std::size_t>(
-      std::min_element(cost_.begin() + static_cast<std::ptrdiff_t>(low),
-                       cost_.begin() + static_cast<std::ptrdiff_t>(high) + 1) - cost_.begin());
+  const std::size_t n =
+      static_cast<std::size_t>(std::min_element(cost_.begin() + static_cast<std::ptrdiff_t>(low),
+                                                cost_.begin() + static_cast<std::ptrdiff_t>(high) + 1) -
+                               cost_.begin());
   period_ = static_cast<double>(n);
   if (n > low && n < high) {  // vertex of the parabola through the three lowest
     const double bend = cost_[n - 1] - 2 * cost_[n] + cost_[n + 1];

@@ -49,6 +49,7 @@ bool Loop::step(LoopRecord& record) {
   const double begin = stopwatch_();
   perceive(record);
   decide(record);
+  if (stages_.frame_clock) record.glass_to_command_s = stages_.frame_clock() - frame_.time_s;
   const double chain_s = stopwatch_() - begin;
   record.chain_ms = 1e3 * chain_s;
   if (stop_reason_.empty()) stop_reason_ = watchdog_.computing_time(chain_s);
@@ -57,7 +58,8 @@ bool Loop::step(LoopRecord& record) {
 
 void Loop::perceive(LoopRecord& record) {
   const double begin = stopwatch_(), time = record.frame.time_s, period = 1 / options_.frame_rate_hz;
-  record.stale = !watchdog_.is_fresh(time, stages_.frame_clock ? stages_.frame_clock() - time : NAN);
+  if (stages_.frame_clock) record.age_s = stages_.frame_clock() - time;
+  record.stale = !watchdog_.is_fresh(time, record.age_s);
   record.track = stages_.target_tracker->track(record.frame);
   if (stages_.marker_tracker) record.marker_track = stages_.marker_tracker->track(record.frame);
   record.track_ms = 1e3 * (stopwatch_() - begin);

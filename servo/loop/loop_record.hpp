@@ -29,6 +29,8 @@ struct LoopRecord {
   bool implausible = false;  ///< the target jumped further than it can, and was not believed
   GuardReport guard;
   ToolCommand command;
+  double age_s = NAN;               ///< of the frame when the loop took it; NaN where no clock says
+  double glass_to_command_s = NAN;  ///< from mid-exposure until the command was given; likewise
   double track_ms = 0;  ///< trackers alone
   double chain_ms = 0;  ///< from the frame in memory to the command
 };

@@ -29,6 +29,11 @@ class BeatClock {
   /// A scalar measurement whose value is too large by `innovation`, with the `slope` by phi and noise `variance`.
   void update(double innovation, double slope, double variance);
 
+  /// The beat turns out to be another one than was expected: its stretch is known `sigma` less well. Not in systole.
+  void doubt(double sigma) {
+    if (diastole_) P_(2, 2) += sigma * sigma;
+  }
+
   /// How many times systole or diastole began.
   int turns() const { return turns_; }
   double phase() const { return x_[0]; }

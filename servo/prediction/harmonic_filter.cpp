@@ -10,6 +10,11 @@ namespace {
 constexpr double kSoftness = 0.3;
 constexpr int kFirstHarmonics = 6;
 constexpr double kFirstCorrelation_s = 0.08, kSettling_s = 6;
+constexpr double kLearning_s = 3;    // after so long the model is good enough to tell the unusual
+constexpr double kAnotherBeat = 20;  // chi^2 with 3 degrees of freedom: one in 6000 by chance
+constexpr double kAnotherStretch =
+    1;                        // standard deviation: of a beat half as long, diastole runs at more than twice its rate
+constexpr double kUsual = 9;  // a rare misfit counts as three standard deviations in what the model leaves
 
 double near_zero(double cycles) { return cycles - std::round(cycles); }
 }  // namespace
@@ -84,6 +89,13 @@ void HarmonicFilter::observe(double time_s, const Axes& position, const Axes& no
   const double age = time_s - started_s_;
   if (age > 3 && age - dt <= 3) motion_.open(motion_.cardiac_harmonics(), false);
   if (age > 6 && age - dt <= 6) motion_.open(motion_.cardiac_harmonics(), true);
+  double chi2 = 0;
+  for (int j = 0; j < 3; ++j)
+    chi2 += innovation_[j] * innovation_[j] /
+            (by_heart[j] * by_heart[j] * clocks_[best_].phase_variance() + r[j] +
+             by_breath[j] * by_breath[j] * breath_.phase_variance());
+  if (age > kLearning_s && chi2 > kAnotherBeat)  // an early beat: the learnt spread of beats does not hold for it
+    for (auto& clock : clocks_) clock.doubt(kAnotherStretch);
   const double fade = std::exp(-dt / 15.0);
   for (std::size_t i = 0; i < kClocks; ++i) {
     BeatClock& clock = clocks_[i];
@@ -118,7 +130,9 @@ void HarmonicFilter::observe(double time_s, const Axes& position, const Axes& no
                    r[j] + by_heart[j] * by_heart[j] * heart_variance);
   motion_.basis(clocks_[best_].phase(), breath_.phase(), h_);
   const Axes left = position - motion_.value(h_);
-  residual_ += std::min(1.0, dt / std::clamp(0.5 * age, 0.3, 4.0)) * (left.cwiseAbs2() - residual_);
+  Axes usual = left.cwiseAbs2();
+  if (age > kLearning_s) usual = usual.cwiseMin(kUsual * residual_);
+  residual_ += std::min(1.0, dt / std::clamp(0.5 * age, 0.3, 4.0)) * (usual - residual_);
   seen_[seen_end_++ % kSeen] = {time_s, breath_.phase(), position};
   if (clocks_[best_].turns() != turns_ || time_s - last_.time_s > 0.8) {
     turns_ = clocks_[best_].turns();

@@ -36,6 +36,7 @@ class Mixture final : public MotionPredictor {
     const double dt = sample.time_s - time_s_;
     if (seen_ == 1) period_s_ = dt;
     if (seen_ > 1) period_s_ += dt < period_s_ ? 0.05 * (dt - period_s_) : 0.005 * std::min(dt - period_s_, period_s_);
+    if (seen_ > 1 && dt > std::max(4 * period_s_, kGap_s)) back_since_s_ = sample.time_s;
     time_s_ = sample.time_s;
     ++seen_;
     position_ = sample.position;
@@ -63,7 +64,8 @@ class Mixture final : public MotionPredictor {
   }
 
   Prediction predict(double time_s) const override {
-    const HorizonErrors::Weights w = weights_at(time_s - time_s_);
+    HorizonErrors::Weights w = weights_at(time_s - time_s_);
+    distrust_the_short_sighted(w);
     Prediction result;
     result.time_s = time_s;
     std::array<Prediction, kMembers> p;
@@ -93,7 +95,8 @@ class Mixture final : public MotionPredictor {
 
  private:
   static constexpr int kMembers = 7, kHold = 1, kEcg = 6;
-  static constexpr double kFarther = 1.3, kExperience_s = 3;
+  static constexpr std::array<int, 4> kShortSighted{0, 2, 3, 4};
+  static constexpr double kFarther = 1.3, kExperience_s = 3, kGap_s = 0.03, kBack_s = 0.1;
 
   MotionPredictor& member(int i) const { return *members_[static_cast<std::size_t>(i)]; }
   bool takes_part(int i) const { return i != kEcg || beats_; }
@@ -107,6 +110,15 @@ class Mixture final : public MotionPredictor {
       if (way.norm() > farthest) p.position = position_ + way * (farthest / way.norm());
       return;
     }
+  }
+
+  // After a gap the members that go by the last few samples have none of them, and their errors are not known yet: for
+  // a while only the heart's rhythm counts, and without one where the target is.
+  void distrust_the_short_sighted(HorizonErrors::Weights& w) const {
+    const double back_s = time_s_ - back_since_s_;
+    if (!(back_s < kBack_s)) return;
+    for (const int i : kShortSighted) w[i] *= (back_s / kBack_s) * (back_s / kBack_s);
+    w[kHold] += 2e-3;
   }
 
   // Between two horizons that are watched, shares of both.
@@ -125,7 +137,7 @@ class Mixture final : public MotionPredictor {
 
   std::vector<std::unique_ptr<MotionPredictor>> members_;
   std::vector<HorizonErrors> errors_;
-  double time_s_ = 0, period_s_ = 0.008;
+  double time_s_ = 0, period_s_ = 0.008, back_since_s_ = -INFINITY;
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
   long seen_ = 0;
   bool beats_ = false;

@@ -1,7 +1,7 @@
 #pragma once
 // Where the tool goes while it does not follow the target. HOLD: back to where it was when the target was last seen.
-// RETRACT: from there along its axis, away from the tissue. RESUME: from wherever it is to the moving goal, by an offset
-// from the goal that fades away.
+// RETRACT: from there along its axis, away from the tissue. RESUME: from wherever it is to the moving goal, by an
+// offset from the goal that fades away.
 #include <Eigen/Core>
 #include <algorithm>
 

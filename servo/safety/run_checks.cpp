@@ -81,10 +81,11 @@ std::vector<std::string> reasons_to_refuse(const LoopOptions& options, const std
   if (controller == "ibvs") {
     const double most = largest_stable_gain(latency, period, robot);
     if (options.control.gain >= most)
-      reasons.push_back(fmt::format(
-          "loop.control.gain {:.3g} /s is unstable: with {:.0f} ms of latency, a period of {:.0f} ms and this robot the "
-          "loop oscillates from {:.3g} /s on; take half of that or less",
-          options.control.gain, 1e3 * latency, 1e3 * period, most));
+      reasons.push_back(
+          fmt::format("loop.control.gain {:.3g} /s is unstable: with {:.0f} ms of latency, a period of {:.0f} ms and "
+                      "this robot the "
+                      "loop oscillates from {:.3g} /s on; take half of that or less",
+                      options.control.gain, 1e3 * latency, 1e3 * period, most));
   }
   const double ahead = latency + robot.lag_s + period;
   if (ahead > options.guard.max_prediction_s)

@@ -2,6 +2,13 @@
 
 namespace heartservo::servo {
 
+namespace {
+
+constexpr double kRejoin_s =
+    0.05;  // after a longer coast the goal is not where it was foreseen, and the way back is gone slowly
+
+}  // namespace
+
 void Supervisor::enter(LoopMode mode, double time_s) {
   if (mode == mode_) return;
   mode_ = mode;
@@ -31,6 +38,7 @@ LoopMode Supervisor::update(double time_s, bool seen, bool known) {
     approaching_ = false;
     enter(LoopMode::HOLD, time_s);
   } else {
+    if (seen && mode_ == LoopMode::COAST && time_s - since_s_ > kRejoin_s) approaching_ = true;
     enter(!seen ? LoopMode::COAST : approaching_ ? LoopMode::RESUME : LoopMode::FOLLOW, time_s);
   }
   return mode_;

@@ -3,7 +3,8 @@
 //
 //   FOLLOW <-> COAST -> HOLD -> RETRACT        after coast_s and hold_s without a target that is seen and believed
 //      ^                  |        |
-//      +---- RESUME <-----+--------+           after resume_frames frames in a row with one
+//      +---- RESUME <-----+--------+           after resume_frames frames in a row with one; after a coast of more than
+//                                              0.05 s at once
 #include <algorithm>
 
 #include "servo/safety/guard_options.hpp"

@@ -141,8 +141,7 @@ void ToolView::paint_row(int v, float* cover, float* grey, float* work) const {
   marker.light = static_cast<float>(options_.brightness * std::min(fall_off, 1.2));
   for (int k = 0; k < 3; ++k)
     for (int axis = 0; axis < 3; ++axis) marker.axes[axis][k] = static_cast<float>(turn_(k, axis));
-  for (int axis = 0; axis < 3; ++axis)
-    marker.centre[axis] = static_cast<float>(turn_.col(axis).dot(centre) * per_half);
+  for (int axis = 0; axis < 3; ++axis) marker.centre[axis] = static_cast<float>(turn_.col(axis).dot(centre) * per_half);
   shade_marker(marker, x, y, last - first, cover, grey);
 }
 
@@ -167,7 +166,8 @@ void draw_tool(ToolView& view, const ToolPose& pose, cv::Mat& grey, cv::Mat* col
   }
 }
 
-void draw_tool(const tracking::Camera& camera, const ToolOptions& options, const ToolPose& pose, cv::Mat& grey, cv::Mat* colour) {
+void draw_tool(const tracking::Camera& camera, const ToolOptions& options, const ToolPose& pose, cv::Mat& grey,
+               cv::Mat* colour) {
   if (grey.type() != CV_8UC1 || grey.cols != camera.width || grey.rows != camera.height)
     throw ConfigError(fmt::format("draw_tool: picture of {} x {} px for a camera of {} x {}, or not 8-bit grey",
                                   grey.cols, grey.rows, camera.width, camera.height));

@@ -83,7 +83,8 @@ class ToolView {
 
 /// Draws the tool into `grey` (CV_8UC1, the camera's size) and, unless null, `colour` (CV_8UC3). Exact to the distorted
 /// camera; edges are anti-aliased. For pictures of any source; for many of them keep a ToolView.
-void draw_tool(const tracking::Camera& camera, const ToolOptions& options, const ToolPose& pose, cv::Mat& grey, cv::Mat* colour);
+void draw_tool(const tracking::Camera& camera, const ToolOptions& options, const ToolPose& pose, cv::Mat& grey,
+               cv::Mat* colour);
 void draw_tool(ToolView& view, const ToolPose& pose, cv::Mat& grey, cv::Mat* colour);
 
 }  // namespace heartservo::sim

@@ -91,7 +91,8 @@ Eigen::Vector3d HeartMotion::displacement(double t) const {
     return {0, 0, options_.rail.travel_m * (there - 0.5)};
   }
   if (options_.profile == "sine")
-    return options_.sine_amplitude_m * std::sin(kTau * options_.sine_hz * t) * Eigen::Vector3d::Unit(options_.sine_axis);
+    return options_.sine_amplitude_m * std::sin(kTau * options_.sine_hz * t) *
+           Eigen::Vector3d::Unit(options_.sine_axis);
   const std::complex<double> breath = turn(respiration_phase(t));
   const std::complex<double> beat = turn(cardiac_phase(t));
   const double beat_gain = strength(breath);

@@ -9,6 +9,7 @@
 
 #include "servo/control/registry.hpp"
 #include "tracking/camera/camera_file.hpp"
+#include "tracking/frames/v4l2/camera_options.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/planar/registry.hpp"
 #include "tracking/settings/errors.hpp"
@@ -30,11 +31,10 @@ void check_depth(const Scene& scene, std::vector<std::string>& problems) {
     problems.push_back(fmt::format("depth.source: stereo needs {}", missing));
   if (region && scene.depth.source == "landmark" &&
       (scene.is_recorded() || scene.depth.landmark >= static_cast<int>(scene.surface.landmarks.size())))
-    problems.push_back(fmt::format("depth.landmark is {} but {}", scene.depth.landmark,
-                                   scene.is_recorded()
-                                       ? std::string("recorded frames have no landmark of known size")
-                                       : fmt::format("surface.landmarks has {} entries",
-                                                     scene.surface.landmarks.size())));
+    problems.push_back(fmt::format(
+        "depth.landmark is {} but {}", scene.depth.landmark,
+        scene.is_recorded() ? std::string("recorded frames have no landmark of known size")
+                            : fmt::format("surface.landmarks has {} entries", scene.surface.landmarks.size())));
   if (!scene.recording.right.empty() && scene.camera.calibration.empty())
     problems.emplace_back("recording.right needs camera.calibration, a stereo file");
 }
@@ -115,11 +115,13 @@ std::vector<std::string> Scene::validate() const {
         "recorded frames have no landmark of known size: engines.estimator must be assumed_depth, region_depth or "
         "stereo_depth");
   if (is_recorded() && (loop.force.on() || loop.eye_in_hand))
-    problems.emplace_back("loop.force and loop.eye_in_hand need a simulated heart: recorded frames cannot be touched or moved");
+    problems.emplace_back(
+        "loop.force and loop.eye_in_hand need a simulated heart: recorded frames cannot be touched or moved");
   if (loop.eye_in_hand && loop.tip.use_marker)
     problems.emplace_back("loop.eye_in_hand shows no tool: loop.tip.use_marker must be false");
   if (is_recorded() && loop.path.type != "hold")
-    problems.emplace_back("loop.path needs the heart's orientation, which recorded frames do not tell: it must be hold");
+    problems.emplace_back(
+        "loop.path needs the heart's orientation, which recorded frames do not tell: it must be hold");
   if (is_recorded() && ecg.source == "simulated")
     problems.emplace_back("ecg.source: recorded frames have no simulated heart; give a recorded ECG");
   if (!depth_rail.tilts_rad.empty() && (is_recorded() || motion.profile != "rail" || target.landmark < 0))
@@ -148,6 +150,7 @@ Scene load_scene(const std::string& file) {
 }
 
 std::string resolve(const Scene& scene, const std::string& path) {
+  if (tracking::v4l2::is_camera(path)) return path;
   const std::filesystem::path p(path);
   return p.is_absolute() ? path : (std::filesystem::path(scene.folder) / p).lexically_normal().string();
 }

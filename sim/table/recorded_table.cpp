@@ -101,9 +101,11 @@ class RecordedTable final : public Table, private tracking::FrameSource {
   double frame_rate_hz() const override { return source_->frame_rate_hz(); }
   std::optional<std::size_t> frame_count() const override {
     const auto count = source_->frame_count();
+    if (!count && source_->live() && limit_ < SIZE_MAX) return limit_;
     return count ? std::min(*count, limit_) : count;
   }
   std::string description() const override { return source_->description(); }
+  tracking::LiveSource* live() override { return source_->live(); }
 
   // Against a named point the goal is carried as by a hand that holds on to the point: it keeps its distance in pixels.
   void find_reference(const std::string& file) {

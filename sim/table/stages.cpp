@@ -8,6 +8,7 @@
 #include "sim/scene/scene.hpp"
 #include "sim/table/table.hpp"
 #include "tracking/frames/frame.hpp"
+#include "tracking/frames/live_source.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/landmark/square_refinement.hpp"
 #include "tracking/planar/registry.hpp"
@@ -63,6 +64,7 @@ servo::LoopStages make_stages(const Scene& scene, Table& table) {
     stages.marker_estimator = tracking::estimators().make("landmark_refined", estimator);
     stages.refine_marker = refiner(camera, picked.marker_edge_ratio);
   }
+  if (tracking::LiveSource* live = table.frames().live()) stages.frame_clock = [live] { return live->now_s(); };
   if (auto ecg = table.ecg()) stages.ecg = std::make_unique<servo::EcgMonitor>(std::move(ecg));
   stages.predictor = servo::predictors().make(scene.engines.predictor, scene.loop.prediction);
   stages.control_law = servo::control_laws().make(scene.engines.controller, control_setup(scene, table));

@@ -67,15 +67,18 @@ struct FakeTracker final : tracking::TargetTracker {
   void mark_left_out(cv::Mat&) override {}
 };
 
-/// The target moves along x at kFakeSpeed. It seems to be 20 mm off in the frame at `jump_at_s`.
+/// The target moves along x at kFakeSpeed. It seems to be 20 mm off in the frame at `jump_at_s`, and is `offset` away from
+/// `offset_after_s` on.
 struct FakeEstimator final : tracking::TargetEstimator {
-  double jump_at_s = -1;
+  double jump_at_s = -1, offset_after_s = 1e9;
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   tracking::TargetState estimate(const tracking::Track& track) override {
     tracking::TargetState state;
     state.time_s = track.time_s;
     state.state = track.state;
     const double jump = std::abs(track.time_s - jump_at_s) < 1e-9 ? 0.02 : 0;
     state.T_camera_target.translation() = Eigen::Vector3d(kFakeSpeed * track.time_s + jump, 0, 0.05);
+    if (track.time_s > offset_after_s - 1e-9) state.T_camera_target.translation() += offset;
     return state;
   }
 };

@@ -47,10 +47,30 @@ TEST(LoopSafety, ALostTargetIsCoastedHeldRetractedFromAndApproachedAgain) {
 TEST(LoopSafety, AShortLossIsOnlyCoasted) {
   FakeBench bench(60);
   bench.tracker->lost_from = 30;
-  bench.tracker->lost_to = 40;
+  bench.tracker->lost_to = 33;
   bench.run();
-  EXPECT_EQ(bench.records[39].mode, LoopMode::COAST);
-  EXPECT_EQ(bench.records[40].mode, LoopMode::FOLLOW);
+  EXPECT_EQ(bench.records[32].mode, LoopMode::COAST);
+  EXPECT_EQ(bench.records[33].mode, LoopMode::FOLLOW);
+}
+
+TEST(LoopSafety, AfterALongerCoastTheGoalIsApproachedAtOnceAndSlowly) {
+  FakeBench bench(80);
+  bench.tracker->lost_from = 30;
+  bench.tracker->lost_to = 42;
+  bench.estimator->offset_after_s = 0.42;  // the target was foreseen 3 mm from where it comes back
+  bench.estimator->offset = {0, 0.003, 0};
+  bench.options.guard.max_target_speed = 10;
+  bench.options.guard.approach_speed = 0.05;
+  bench.run();
+  EXPECT_EQ(bench.records[41].mode, LoopMode::COAST);
+  EXPECT_EQ(bench.records[42].mode, LoopMode::RESUME);
+  EXPECT_EQ(bench.records[79].mode, LoopMode::FOLLOW);
+  double fastest = 0;
+  for (std::size_t k = 42; k + 1 < 80; ++k)
+    fastest = std::max(fastest, std::abs(bench.records[k + 1].goal_then.position.y() -
+                                         bench.records[k].goal_then.position.y()) / kFakePeriod);
+  EXPECT_LT(fastest, 0.1) << "3 mm in one period would be 0.3 m/s";
+  EXPECT_NEAR(bench.records[79].goal_then.position.y(), 0.003, 1e-4);
 }
 
 TEST(LoopSafety, ACoastEndsWhereThePredictionLeavesWhatWasSeen) {

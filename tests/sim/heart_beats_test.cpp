@@ -155,7 +155,9 @@ TEST(HeartBeats, ReachThePredictorOfALoopAsDetections) {
   std::vector<double> beats;
   for (const auto& [now, beat] : told) {
     beats.push_back(beat);
-    if (now >= 0) EXPECT_GT(now + 0.008 - beat, 0.1);
+    if (now >= 0) {
+      EXPECT_GT(now + 0.008 - beat, 0.1);
+    }
   }
   const auto s = servo::score_beats(between(beats, 0, 2.2), between(table->beats(), 0, 2.2), 0.05);
   EXPECT_GE(s.labels, 2U);

@@ -80,10 +80,11 @@ void expect_the_scene(const char* name, std::uint64_t seed, bool as_printed) {
     ASSERT_NE(same, truth.lines.end()) << name_of(line);
     for (int a = 0; a < 3; ++a) {
       EXPECT_NEAR(line.density_percent[a], same->density_percent[a], 1) << name_of(line) << " axis " << a;
-      if (as_printed)
+      if (as_printed) {
         EXPECT_NEAR(line.density_percent[a],
                     profile::kDensityPercent[static_cast<std::size_t>(a)][static_cast<std::size_t>(row)], 2)
             << name_of(line) << " axis " << a;
+      }
     }
   }
   EXPECT_EQ(seen, (std::array<bool, 6>{true, true, true, true, true, true}));

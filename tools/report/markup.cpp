@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+
+#include "tracking/settings/errors.hpp"
 
 namespace heartservo::tools::markup {
 
@@ -105,9 +109,19 @@ std::string image(const ReportPicture& picture) {
       shown.cols, shown.rows, escaped(picture.caption), base64(png), escaped(picture.caption), keys);
 }
 
+std::string video(const ReportVideo& video) {
+  std::ifstream in(video.file, std::ios::binary);
+  const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(in), {}};
+  if (bytes.empty()) throw ConfigError(video.file.string() + ": the video cannot be read");
+  return fmt::format(
+      "<figure class=\"picture film\"><video controls loop muted playsinline src=\"data:video/webm;base64,{}\"></video>"
+      "<figcaption>{}</figcaption></figure>\n",
+      base64(bytes), escaped(video.caption));
+}
+
 std::string table(const ReportTable& table) {
   std::string html =
-      fmt::format("<div{}><h2>{}</h2>\n", table.header.size() > 5 ? " class=\"wide\"" : "", escaped(table.title));
+      fmt::format("<div{}><h2>{}</h2>\n", table.wide || table.header.size() > 5 ? " class=\"wide\"" : "", escaped(table.title));
   if (!table.note.empty()) html += fmt::format("<p class=\"note\">{}</p>\n", escaped(table.note));
   html += "<div class=\"scroll\"><table>\n";
   // in a comparison a column is numeric when all its cells look like numbers

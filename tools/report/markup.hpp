@@ -16,6 +16,8 @@ std::string script_safe(std::string json);
 std::string without_source_map(std::string_view text);
 /// <img> with the picture inside. Throws std::invalid_argument for an empty or not 8 bit picture.
 std::string image(const ReportPicture& picture);
+/// <video> with the file inside. Throws ConfigError when it cannot be read.
+std::string video(const ReportVideo& video);
 std::string table(const ReportTable& table);
 /// Puts values in the place of {{name}}. Throws std::logic_error when a name has no value.
 std::string filled(std::string_view page, const std::map<std::string, std::string, std::less<>>& values);

@@ -10,9 +10,13 @@
 #include <set>
 #include <stdexcept>
 
+#include "tools/report/thinning.hpp"
+
 namespace heartservo::tools {
 
 namespace {
+
+constexpr std::size_t kMostValues = 400000;  // of a page, about 4 MB
 
 void append_column(fmt::memory_buffer& text, std::span<const double> values, bool time) {
   const auto out = std::back_inserter(text);
@@ -68,6 +72,7 @@ std::string plot_data(const Report& report) {
                      {"unit", plot.y_label},
                      {"scale", plot.scale},
                      {"log_from", plot.log_from},
+                     {"about_mean", plot.about_mean},
                      {"x", x},
                      {"table", index},
                      {"series", series}});
@@ -84,9 +89,11 @@ std::string plot_data(const Report& report) {
   for (std::size_t i = 0; i < used.tables.size(); ++i) {
     text.push_back(i > 0 ? ',' : ' ');
     bool first = true;
-    for (const auto& name : used.columns[used.tables[i]]) {
+    const auto& columns = used.columns[used.tables[i]];
+    const TimeTable table = thinned(*used.tables[i], columns, kMostValues / used.tables.size());
+    for (const auto& name : columns) {
       fmt::format_to(out, "{}\n{}:", first ? "{" : ",", quoted(name));
-      append_column(text, used.tables[i]->column(name), name == used.tables[i]->columns()[0]);
+      append_column(text, table.column(name), name == table.columns()[0]);
       first = false;
     }
     text.push_back('}');

@@ -65,6 +65,7 @@ std::string other_plots(const Report& report) {
 std::string other_pictures(const Report& report) {
   std::string html;
   for (std::size_t i = 1; i < report.pictures.size(); ++i) html += markup::image(report.pictures[i]);
+  if (!report.video.file.empty()) html += markup::video(report.video);
   return section("Pictures", "pictures", html);
 }
 

@@ -26,13 +26,19 @@ struct ReportPicture {
   std::vector<PictureKey> keys = {};  ///< shown as a legend below
 };
 
+/// A short film inside the page, WebM.
+struct ReportVideo {
+  std::string caption;
+  std::filesystem::path file;  ///< read when the page is made; empty for none
+};
+
 struct ReportSeries {
   std::string label;      ///< "heart z"
   std::string column;     ///< of the table
   bool is_truth = false;  ///< what the others should be: drawn broad and pale below them
 };
 
-/// Columns over the table's first: time, or frequency. All plots over time zoom and point together.
+/// Columns over the table's first: time, or frequency. Plots over time of one table zoom and point together.
 struct ReportPlot {
   std::string title;
   std::string y_label;  ///< with the unit people read: "mm"
@@ -41,6 +47,7 @@ struct ReportPlot {
   std::string note = "";             ///< one line below the title, "" for none
   const TimeTable* table = nullptr;  ///< nullptr: the report's
   double log_from = 0;               ///< above 0: a logarithmic axis, on which smaller values lie at this one
+  bool about_mean = false;           ///< each series less its mean: only the motion matters
 };
 
 /// Rows of text: key and value (no header), or a comparison with a header. Cells that look like numbers align right.
@@ -49,6 +56,7 @@ struct ReportTable {
   std::vector<std::string> header;  ///< empty for key and value
   std::vector<std::vector<std::string>> rows;
   std::string note;
+  bool wide = false;  ///< over the whole page; else only with more than five columns
 };
 
 struct Report {
@@ -59,6 +67,7 @@ struct Report {
   std::vector<std::string> notices;     ///< what a reader must know first: "ended by Ctrl-C after 12 s of 60 s"
   std::vector<ReportPlot> plots;        ///< the first is on the first screen: residual against motion
   std::vector<ReportPicture> pictures;  ///< so is the first of these
+  ReportVideo video;                    ///< after them
   std::vector<ReportTable> tables;
   const TimeTable* table = nullptr;  ///< must live until write_report() returns
   std::vector<ReportSeries>

@@ -16,8 +16,13 @@
     const columns = data.tables[plot.table];
     const series = plot.series.map(s => columns[s.column]);
     const lowest = plot.log_from > 0 ? plot.log_from : -Infinity;
-    const value = v => v === null ? null : Math.max(v * plot.scale, lowest);
-    return columns[plot.x].map((t, i) => [t].concat(series.map(s => value(s[i]))));
+    const mean = s => {
+      const known = plot.about_mean ? s.filter(v => v !== null) : [];
+      return known.reduce((sum, v) => sum + v, 0) / Math.max(known.length, 1);
+    };
+    const means = series.map(mean);
+    const value = (v, less) => v === null ? null : Math.max((v - less) * plot.scale, lowest);
+    return columns[plot.x].map((t, i) => [t].concat(series.map((s, k) => value(s[i], means[k]))));
   }
 
   // Seven colours, then the same ones dashed; truth broad and pale. Series are counted without it.
@@ -150,12 +155,13 @@
     graphs.push({g, plot});
   });
   const timed = graphs.filter(p => over_time(p.plot));
-  if (timed.length > 1) Dygraph.synchronize(timed.map(p => p.g), {selection: true, zoom: true, range: false});
+  // Plots of the same table are about the same run: they zoom and point together.
+  new Set(timed.map(p => p.plot.table)).forEach(table => {
+    const together = timed.filter(p => p.plot.table === table).map(p => p.g);
+    if (together.length > 1) Dygraph.synchronize(together, {selection: true, zoom: true, range: false});
+  });
 
-  function whole() {
-    if (timed.length) timed[0].g.resetZoom();
-    graphs.filter(p => !over_time(p.plot)).forEach(p => p.g.resetZoom());
-  }
+  function whole() { graphs.forEach(p => p.g.resetZoom()); }
   document.querySelectorAll('button.whole').forEach(b => b.addEventListener('click', whole));
 
   // Arrows pan, + and - zoom, 0 shows the whole run.

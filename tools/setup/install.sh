@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# install.sh [--tests]: installs what heartservo is built from (packages.txt), with --tests also what its tests use.
-# Returns at once when everything is there.
+# install.sh [--tests] [--vm]: installs what heartservo is built from (packages.txt), with --tests also what its tests
+# use, with --vm what those in a virtual machine use. Returns at once when everything is there.
 set -euo pipefail
 
 list=$(dirname "$(readlink -f "$0")")/packages.txt
-with_tests=0
+with_tests=0 with_vm=0
 for argument in "$@"; do
   case $argument in
     --tests) with_tests=1 ;;
-    *) echo "install.sh: unknown option '$argument'; the only one is --tests" >&2; exit 2 ;;
+    --vm) with_vm=1 ;;
+    *) echo "install.sh: unknown option '$argument'; there are --tests and --vm" >&2; exit 2 ;;
   esac
 done
 
@@ -17,10 +18,11 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   exit 2
 fi
 
-mapfile -t packages < <(awk -v tests="$with_tests" '
-  /^\[tests\]/ { if (!tests) exit; next }
+mapfile -t packages < <(awk -v tests="$with_tests" -v vm="$with_vm" '
+  /^\[tests\]/ { left_out = !tests; next }
+  /^\[vm\]/ { left_out = !vm; next }
   { sub(/#.*/, "") }
-  NF { print $1 }' "$list")
+  NF && !left_out { print $1 }' "$list")
 
 missing=()
 for package in "${packages[@]}"; do

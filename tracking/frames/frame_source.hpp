@@ -7,6 +7,7 @@
 namespace heartservo::tracking {
 
 struct Frame;
+class LiveSource;
 
 /// Where frames come from: a folder, a video, a camera, a simulated endoscope.
 class FrameSource {
@@ -21,6 +22,8 @@ class FrameSource {
   virtual double frame_rate_hz() const = 0;                     ///< nominal
   virtual std::optional<std::size_t> frame_count() const = 0;  ///< if it is known before the end
   virtual std::string description() const = 0;                  ///< for people and summary.json: a path or a scene
+  /// The camera behind it (live_source.hpp); null for frames that wait until they are asked for.
+  virtual LiveSource* live() { return nullptr; }
 };
 
 }  // namespace heartservo::tracking

@@ -31,6 +31,7 @@ constexpr double kLikelyAnisotropy = 2;     // tilted by 60 degrees
 
 constexpr std::size_t kStartsWhileLost = 4;  // alignments from places found by correlation, in one frame
 constexpr std::array<double, 4> kSearchTurns_rad{-0.26, 0.26, -0.52, 0.52};
+constexpr double kSearchScale = 1.15;
 
 Eigen::Matrix3d rotation(double angle_rad) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -226,15 +227,16 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
 PlanarTracker::Candidate PlanarTracker::reacquire(const cv::Mat& grey) {
   pyramid_.build(grey, cv::Rect(0, 0, grey.cols, grey.rows), options_.levels, glare_grey());
   aligner_->forget();
-  // A frame has time for a part of the search: upright in every one, turned one way after the other; the most alike
-  // places in every one, the others in turn.
+  // A frame has time for a part of the search: upright in every one, nearer and further (by as much as a heart moves in
+  // half a beat) and turned one way after the other; the most alike places in every one, the others in turn.
   const auto n = static_cast<std::size_t>(lost_frames_++);
-  return search(corners_of(last_.G_plane_patch), {std::hypot(grey.cols, grey.rows), 6, kStartsWhileLost,
-                                                  kSearchTurns_rad[n % 4], n});
+  return search(corners_of(last_.G_plane_patch),
+                {std::hypot(grey.cols, grey.rows), 6, kStartsWhileLost, kSearchTurns_rad[n % 4], n,
+                 n % 2 == 0 ? kSearchScale : 1 / kSearchScale});
 }
 
 // Correlates the template, as the last believed alignment and the reference show it, with a coarse level of the pyramid
-// and aligns from the best places. After a loss it may have turned meanwhile.
+// and aligns from the best places. After a loss it may have turned or come nearer meanwhile.
 PlanarTracker::Candidate PlanarTracker::search(const Quad& around, const SearchExtent& extent) {
   const int level = search_level(side_px_, pyramid_.levels());
   struct Start {
@@ -245,9 +247,8 @@ PlanarTracker::Candidate PlanarTracker::search(const Quad& around, const SearchE
   std::vector<Start> starts;
   const auto look_for = [&](const Alignment& view) {
     const Quad corners = corners_of(view.G_plane_patch);
-    const auto places =
-        find_template(aligner_->patch(level), corners, pyramid_.level(level), centre(around), extent.radius_px,
-                      extent.places);
+    const auto places = find_template(aligner_->patch(level), corners, pyramid_.level(level), centre(around),
+                                      extent.radius_px, extent.places);
     for (const auto& place : places) {
       const Eigen::Vector2d from = camera_.normalise(centre(corners)), to = camera_.normalise(place.centre);
       if (!from.allFinite() || !to.allFinite()) continue;
@@ -260,6 +261,11 @@ PlanarTracker::Candidate PlanarTracker::search(const Quad& around, const SearchE
   };
   look_for(last_);
   look_for(reference_);
+  if (extent.scale != 1) {
+    Alignment view = last_;
+    view.G_plane_patch *= Eigen::Vector3d(extent.scale, extent.scale, 1).asDiagonal();
+    look_for(view);
+  }
   if (extent.turn_rad != 0) {
     Alignment view = reference_;
     view.G_plane_patch *= rotation(extent.turn_rad);
@@ -347,7 +353,8 @@ Track PlanarTracker::track(const Frame& frame) {
   track.target = pixel_of(last_.G_plane_patch, aligner_->bent(last_, Eigen::Vector2d::Zero()));
   for (int i = 0; i < kGridSide * kGridSide; ++i) {
     const auto along = [](int k) { return (2 * k + 1.0) / kGridSide - 1; };
-    const Eigen::Vector2d point(along(i % kGridSide) * patch_corners_[2].x(), along(i / kGridSide) * patch_corners_[2].y());
+    const Eigen::Vector2d point(along(i % kGridSide) * patch_corners_[2].x(),
+                                along(i / kGridSide) * patch_corners_[2].y());
     track.points[static_cast<std::size_t>(i)] = pixel_of(last_.G_plane_patch, aligner_->bent(last_, point));
   }
   track.gain = last_.gain;

@@ -57,10 +57,11 @@ class PlanarTracker final : public TargetTracker {
 
   struct SearchExtent {
     double radius_px;
-    int places;               // of each view, best first
-    std::size_t starts;       // of all views together, tried by aligning
-    double turn_rad;          // of a further view; 0: none
-    std::size_t turn = 0;         // counts calls: the last start is another one of the rest each time
+    int places;            // of each view, best first
+    std::size_t starts;    // of all views together, tried by aligning
+    double turn_rad;       // of a further view; 0: none
+    std::size_t turn = 0;  // counts calls: the last start is another one of the rest each time
+    double scale = 1;      ///< another size of the last view to look for; 1: none
   };
 
   double glare_grey() const;

@@ -164,7 +164,7 @@ TEST_P(DocumentedHelp, ItsExamplesWork) {
 
 INSTANTIATE_TEST_SUITE_P(Commands, DocumentedHelp,
                          testing::Values("heartservo", "servo", "track", "render", "scene", "calibrate", "camera",
-                                         "analyse", "beats", "stabilise"),
+                                         "analyse", "beats", "stabilise", "paper", "report", "doctor", "capture"),
                          [](const auto& command) { return command.param; });
 
 TEST_F(DocumentedCommands, AWrongLineIsNoticed) {

@@ -38,10 +38,10 @@ class RunFolderContract : public CommandLine {
     std::istringstream names(line);
     while (std::getline(names, cell, ',')) {
       const std::string last = cell.substr(cell.find_last_of('/') + 1), unit = last.substr(last.find('_') + 1);
-      static const std::set<std::string> units{"s", "m", "px", "m_s", "ms", "grey"};
+      static const std::set<std::string> units{"s", "m", "px", "m_s", "ms", "grey", "n"};
       static const std::set<std::string> pure{"sequence",   "status", "state",   "quality",    "gain",
                                               "iterations", "mode",   "limited", "not_finite", "qx",
-                                              "qy",         "qz",     "qw"};
+                                              "qy",         "qz",     "qw",      "stale",      "implausible"};
       EXPECT_TRUE(pure.count(last) || units.count(unit) || cell == "command/acts_at_s") << cell << " shows no unit";
     }
     double before = -1;

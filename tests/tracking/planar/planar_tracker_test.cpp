@@ -79,6 +79,23 @@ TEST(PlanarTracker, LostOnNoiseAtOnceAndBackWithinAFrame) {
   EXPECT_FALSE(tracker->track(frame_of(lone_region(60, -40), 61)).reacquired);
 }
 
+// A heart comes nearer and goes further away while its region is covered: by a sixth in half a beat.
+TEST(PlanarTracker, BackWithinTwoFramesAtAnotherDistance) {
+  for (const double scale : {1.17, 1 / 1.17}) {
+    const auto tracker = started();
+    for (std::uint64_t k = 1; k < 5; ++k)
+      EXPECT_EQ(tracker->track(frame_of(cv::Mat(260, 320, CV_8UC1, cv::Scalar(128)), k)).state, TrackState::LOST);
+    const Eigen::Vector2d middle = centre(kRegion), to = middle + Eigen::Vector2d(31, -17);
+    Eigen::Matrix3d H = moved_by(to.x() - scale * middle.x(), to.y() - scale * middle.y());
+    H(0, 0) = H(1, 1) = scale;
+    Track track = tracker->track(frame_of(test::analytic_image(320, 260, H), 5));
+    if (track.state == TrackState::LOST) track = tracker->track(frame_of(test::analytic_image(320, 260, H), 6));
+    ASSERT_EQ(track.state, TrackState::OK) << scale;
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_LT((track.corners[i] - transform(H, kRegion)[i]).norm(), 0.05) << scale;
+  }
+}
+
 TEST(PlanarTracker, LostOnPlainGreyAndOnOtherTexture) {
   const auto tracker = started();
   EXPECT_EQ(tracker->track(frame_of(cv::Mat(260, 320, CV_8UC1, cv::Scalar(100)), 1)).state, TrackState::LOST);
