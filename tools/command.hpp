@@ -44,6 +44,7 @@ Command add_capture_command(CLI::App& program);
 Command add_paper_command(CLI::App& program);
 Command add_report_command(CLI::App& program);
 Command add_doctor_command(CLI::App& program);
+Command add_sweep_command(CLI::App& program);
 
 /// A check for options: a finite number from `low` to `high`. CLI::Range lets NaN pass.
 CLI::Validator finite(double low, double high);

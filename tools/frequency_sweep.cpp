@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 constexpr int kFrequencies = 9;
-constexpr double kSettle_s = 2, kScored_s = 3;  // at least, and four periods
+constexpr double kSettle_s = 8, kScored_s = 3;  // at least, and four periods; predictors learn the motion meanwhile
 constexpr double kTau = 2 * std::numbers::pi;
 
 json value(double v) { return std::isfinite(v) ? json(v) : json(); }

@@ -35,6 +35,7 @@ struct ServoOptions {
   double latency_ms = -1, settle_s = -1;
   bool real_time = false, show = false;
   bool no_video = false;
+  int igtl_port = 0;
 };
 
 template <class Registry>
@@ -83,6 +84,7 @@ ServoRequest configure(const ServoOptions& o) {
   request.quiet = o.run.quiet;
   request.real_time = o.real_time;
   request.show = o.show;
+  request.igtl_port = o.igtl_port;
   if (o.run.frames && !scene.is_recorded()) fit_settling(request, scene.frame_count(), scene.camera.frame_rate_hz);
   return request;
 }
@@ -187,6 +189,9 @@ Command add_servo_command(CLI::App& program) {
   app->add_flag("--show", o.show, "the picture in a window while it runs (X11)");
   app->add_flag("--real-time", o.real_time,
                 "on a camera: real-time scheduling where allowed, memory locked, no pictures and no progress");
+  app->add_option("--igtl", o.igtl_port, "send target, tip and picture to OpenIGTLink clients on this port (18944)")
+      ->check(CLI::Range(1, 65535))
+      ->type_name("PORT");
   app->add_flag("--no-video", o.no_video, "no short film of the run in the report");
   app->add_flag("--list", o.run.list, "list the engines and exit");
   app->footer(

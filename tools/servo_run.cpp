@@ -17,6 +17,7 @@
 #include "tools/capture/outline.hpp"
 #include "tools/capture/real_time.hpp"
 #include "tools/command.hpp"
+#include "tools/igtl/igtl_stream.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/loop_table.hpp"
 #include "tools/overlay.hpp"
@@ -68,6 +69,16 @@ void show(Window& window, const servo::LoopRecord& record) {
   window.show(record.frame.grey, outlines);
 }
 
+void publish(IgtlStream& stream, const servo::LoopRecord& r) {
+  IgtlSnapshot snapshot;
+  snapshot.time_s = r.frame.time_s;
+  snapshot.has_target = r.target.state != tracking::TrackState::LOST;
+  snapshot.T_camera_target = r.target.T_camera_target;
+  snapshot.T_camera_tip.translation() = r.tip;
+  snapshot.grey = r.frame.grey;
+  stream.publish(snapshot);
+}
+
 }  // namespace
 
 void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_hz) {
@@ -111,6 +122,8 @@ ServoOutcome run_loop(ServoRequest request) {
   std::optional<ShortVideo> video;
   std::optional<Window> window;
   if (request.show) window.emplace("heartservo: " + request.source, table->frames().size());
+  std::optional<IgtlStream> igtl;
+  if (request.igtl_port > 0) igtl.emplace(request.igtl_port);
   ServoRunFacts facts;
   double looped_s = 0;  // in the loop itself: not what is made for people to look at
   {
@@ -124,6 +137,7 @@ ServoOutcome run_loop(ServoRequest request) {
       return more;
     };
     while (!(facts.interrupted = interrupt.requested()) && step()) {
+      if (igtl) publish(*igtl, record);
       const servo::TruthSample truth = table->truth(record);
       score.add(record, truth);
       append(outcome.frames, record, truth);

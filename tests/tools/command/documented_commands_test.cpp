@@ -103,8 +103,7 @@ class DocumentedCommands : public CommandLine {
     static const std::regex run("^heartservo (servo|track|render|stabilise)( |$)");
     if (!std::regex_search(line, run)) return line;
     static const std::regex own("\\s--(frames|out|settle-s)[ =]\\S+");
-    static const std::regex sweep("--sweep-frequency \\S+");
-    const std::string bare = std::regex_replace(std::regex_replace(line, own, ""), sweep, "--sweep-frequency 6:8");
+    const std::string bare = std::regex_replace(line, own, "");
     const auto end = std::min(bare.find_first_of(">|#&;"), bare.size());
     return bare.substr(0, end) + " --frames 12 --out documented" + (end < bare.size() ? " " : "") + bare.substr(end);
   }

@@ -1,0 +1,178 @@
+#include "tools/sweep/sweep_store.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "tracking/settings/errors.hpp"
+
+namespace heartservo::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Quoted where it holds what would end a cell.
+std::string cell(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> result(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"')
+      result.back() += line[++i];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      result.emplace_back();
+    else
+      result.back() += c;
+  }
+  return result;
+}
+
+void write_whole(const fs::path& file, const std::string& text) {
+  const fs::path partial = file.string() + ".partial";
+  std::ofstream out(partial, std::ios::binary);
+  out << text;
+  out.close();
+  std::error_code error;
+  if (out) fs::rename(partial, file, error);
+  if (!out || error)
+    throw ConfigError(fmt::format("{}: cannot be written; check space and permissions", file.string()));
+}
+
+}  // namespace
+
+std::string SweepStore::header() const {
+  std::string line = "run";
+  for (const auto& axis : plan_.axes) line += "," + cell(axis.key);
+  line += ",status";
+  for (const auto& metric : plan_.metrics) line += "," + cell(metric);
+  return line + ",seconds,error\n";
+}
+
+std::string SweepStore::line_of(const SweepResult& r) const {
+  std::string line = std::to_string(r.run);
+  for (const auto& value : plan_.values(r.run)) line += "," + cell(value);
+  line += "," + r.status;
+  for (const double m : r.metrics) line += std::isfinite(m) ? fmt::format(",{}", m) : ",";
+  return line + fmt::format(",{:.3f},{}\n", r.seconds, cell(r.error));
+}
+
+SweepStore::SweepStore(const fs::path& folder, const SweepPlan& plan, int share) : folder_(folder), plan_(plan) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) throw ConfigError(fmt::format("{}: cannot be made: {}", folder_.string(), error.message()));
+  file_ = folder_ / (share == 0 ? std::string("runs.csv") : fmt::format("runs-{}.csv", share));
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (descriptor_ < 0)
+    throw ConfigError(fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(errno)));
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(descriptor_);
+    throw ConfigError(fmt::format("{}: another heartservo is writing this sweep; wait for it or choose another --out",
+                                  file_.string()));
+  }
+  try {
+    read(file_);
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+  char last = '\n';
+  if (const auto size = static_cast<off_t>(fs::file_size(file_)); size > 0)
+    if (::pread(descriptor_, &last, 1, size - 1) == 1 && last != '\n' && ::write(descriptor_, "\n", 1) != 1)
+      throw ConfigError(fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(errno)));
+  if (fs::file_size(file_) == 0) {
+    const std::string first = header();
+    if (::write(descriptor_, first.data(), first.size()) != static_cast<ssize_t>(first.size()))
+      throw ConfigError(fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(errno)));
+  }
+}
+
+SweepStore::~SweepStore() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void SweepStore::read(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::size_t number = 0;
+  const std::size_t columns = 4 + plan_.axes.size() + plan_.metrics.size();
+  while (std::getline(in, line)) {
+    ++number;
+    if (number == 1) {
+      if (line + "\n" != header())
+        throw ConfigError(
+            fmt::format("{}: belongs to another sweep (other axes or metrics); choose another --out", file.string()));
+      continue;
+    }
+    const auto c = cells(line);
+    if (in.eof() || c.size() != columns) continue;  // the line in which a crash came: that run is done again
+    SweepResult r;
+    r.run = std::strtoull(c[0].c_str(), nullptr, 10);
+    const auto values = plan_.values(r.run);
+    if (r.run >= plan_.runs() || !std::equal(values.begin(), values.end(), c.begin() + 1))
+      throw ConfigError(
+          fmt::format("{}:{}: belongs to another sweep (other values); choose another --out", file.string(), number));
+    r.status = c[1 + values.size()];
+    for (std::size_t i = 0; i < plan_.metrics.size(); ++i) {
+      const std::string& text = c[2 + values.size() + i];
+      r.metrics.push_back(text.empty() ? NAN : std::strtod(text.c_str(), nullptr));
+    }
+    r.seconds = std::strtod(c[columns - 2].c_str(), nullptr);
+    r.error = c[columns - 1];
+    results_[r.run] = std::move(r);
+  }
+}
+
+void SweepStore::add(const SweepResult& result) {
+  const std::string line = line_of(result);
+  if (::write(descriptor_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    throw ConfigError(
+        fmt::format("{}: cannot be written: {}; what was done is in it", file_.string(), std::strerror(errno)));
+  results_[result.run] = result;
+}
+
+void SweepStore::forget_failed() {
+  std::erase_if(results_, [](const auto& r) { return r.second.status == "failed"; });
+}
+
+int SweepStore::merge() {
+  int shares = 0;
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with("runs-") || !name.ends_with(".csv")) continue;
+    std::map<std::uint64_t, SweepResult> before;
+    std::swap(before, results_);
+    read(entry.path());
+    std::swap(before, results_);
+    for (const auto& [run, result] : before)
+      if (!has(run)) add(result);
+    ++shares;
+  }
+  return shares;
+}
+
+void SweepStore::write_sorted() const {
+  std::string text = header();
+  for (const auto& [run, result] : results_) text += line_of(result);
+  write_whole(folder_ / "results.csv", text);
+}
+
+}  // namespace heartservo::tools

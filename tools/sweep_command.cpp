@@ -1,0 +1,191 @@
+// heartservo sweep: the product of some settings, run on all cores, with statistics over the seeds.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <fstream>
+#include <thread>
+
+#include "tools/command.hpp"
+#include "tools/interrupt.hpp"
+#include "tools/progress.hpp"
+#include "tools/report/report.hpp"
+#include "tools/run_folder.hpp"
+#include "tools/servo_summary.hpp"
+#include "tools/sweep/sweep_pool.hpp"
+#include "tools/sweep/sweep_statistics.hpp"
+#include "tools/track_tables.hpp"
+#include "tracking/settings/errors.hpp"
+
+namespace heartservo::tools {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint64_t kManyRuns = 20000;  // more are asked for on purpose
+
+struct SweepOptions {
+  std::string file, out, share;
+  int jobs = 0;
+  bool yes = false, merge = false, retry = false, count = false, json = false, quiet = false;
+};
+
+// "3/8": the third of eight.
+std::pair<int, int> share_of(const std::string& text) {
+  int number = 0, of = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%d/%d%c", &number, &of, &rest) != 2 || number < 1 || of < number || of > 100000)
+    throw ConfigError(fmt::format("--share '{}' must be NUMBER/OF, such as 3/8", text));
+  return {number, of};
+}
+
+ReportTable group_table(const SweepPlan& plan, const json& statistics) {
+  ReportTable table{"Medians over the seeds, with 95 % intervals", {}, {}, "", true};
+  for (const auto& axis : plan.axes)
+    if (axis.key != "seed") table.header.push_back(axis.key);
+  for (const char* name : {"runs", "stopped", "failed"}) table.header.emplace_back(name);
+  for (const auto& metric : plan.metrics) table.header.push_back(metric);
+  for (const json& group : statistics["groups"]) {
+    std::vector<std::string> row;
+    for (const auto& axis : plan.axes)
+      if (axis.key != "seed") row.push_back(group["values"][axis.key]);
+    for (const char* name : {"runs", "stopped", "failed"}) row.push_back(std::to_string(group[name].get<int>()));
+    for (const auto& metric : plan.metrics) {
+      const json& m = group["metrics"][metric];
+      row.push_back(m["runs"] == 0   ? std::string("-")
+                    : m["runs"] == 1 ? fmt::format("{:.4g}", m["median"].get<double>())
+                                     : fmt::format("{:.4g} [{:.4g}, {:.4g}]", m["median"].get<double>(),
+                                                   m["low"].get<double>(), m["high"].get<double>()));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  table.note = "Intervals of the median by the bootstrap (2000 resamples); failed runs are left out of them.";
+  return table;
+}
+
+ReportTable pair_table(const json& statistics) {
+  ReportTable table{"Pairs on the same seeds",
+                    {"axis", "a", "b", "everything else", "seeds", "median of a - b", "95 %", "a is less"},
+                    {},
+                    "",
+                    true};
+  for (const json& p : statistics["pairs"]) {
+    std::string others;
+    for (const auto& [key, value] : p["others"].items())
+      others += fmt::format("{}{} {}", others.empty() ? "" : ", ", key, value.get<std::string>());
+    table.rows.push_back({p["axis"], p["a"], p["b"], others, std::to_string(p["seeds"].get<int>()),
+                          fmt::format("{:.4g}", p["median_difference"].get<double>()),
+                          fmt::format("[{:.4g}, {:.4g}]", p["low"].get<double>(), p["high"].get<double>()),
+                          fmt::format("{:.0f} %", 100 * p["a_is_less"].get<double>())});
+    table.note = "Of " + p["metric"].get<std::string>() + ".";
+  }
+  return table;
+}
+
+// results.csv, results.json, report.html of what there is.
+int conclude(const SweepOptions& o, const SweepPlan& plan, const SweepStore& store) {
+  store.write_sorted();
+  json summary = sweep_statistics(plan, store.results());
+  std::size_t failed = 0;
+  for (const auto& [run, r] : store.results()) failed += r.status == "failed";
+  summary["command"] = "sweep";
+  summary["version"] = HEARTSERVO_VERSION;
+  summary["sweep"] = plan.file;
+  summary["title"] = plan.title;
+  summary["runs"] = plan.runs();
+  summary["done"] = store.results().size();
+  summary["failed"] = failed;
+  Report report;
+  report.title = plan.title.empty() ? "sweep " + stem_of(plan.file) : plan.title;
+  report.headline = fmt::format("{} of {} runs are done{}.", store.results().size(), plan.runs(),
+                                failed > 0 ? fmt::format(", {} of them failed", failed) : "");
+  report.tables = {group_table(plan, summary)};
+  if (!summary["pairs"].empty()) report.tables.push_back(pair_table(summary));
+  if (failed > 0) {
+    ReportTable failures{"Failed runs", {"run", "error"}, {}, "Run the sweep again with --retry to repeat them.", true};
+    for (const auto& [run, r] : store.results())
+      if (r.status == "failed" && failures.rows.size() < 50) failures.rows.push_back({std::to_string(run), r.error});
+    report.tables.push_back(failures);
+  }
+  report.summary = summary;
+  std::ofstream(store.folder() / "results.json") << summary.dump(2) << "\n";
+  write_report(report, store.folder() / "report.html");
+  if (o.json) {
+    fmt::print("{}\n", summary.dump(2));
+  } else if (!o.quiet) {
+    fmt::print("{}\n\n", report.headline);
+    for (const auto& table : report.tables) fmt::print("{}\n\n{}\n", table.title, terminal_text(table, true));
+    fmt::print("report: {}\n", (store.folder() / "report.html").string());
+  }
+  return DONE;
+}
+
+int run_sweep(const SweepOptions& o) {
+  const SweepPlan plan = read_sweep(o.file);
+  const std::uint64_t all = plan.runs();
+  if (o.count) {
+    fmt::print("{}\n", all);
+    return DONE;
+  }
+  if (all > kManyRuns && !o.yes)
+    throw ConfigError(fmt::format("{}: {} runs; say --yes when that is what you want", plan.file, all));
+  const auto [share, shares] = o.share.empty() ? std::pair(0, 1) : share_of(o.share);
+  const std::filesystem::path folder =
+      std::filesystem::absolute(o.out.empty() ? "runs/sweep-" + stem_of(plan.file) : o.out);
+  SweepStore store(folder, plan, share);
+  if (o.merge) store.merge();
+  if (o.retry) store.forget_failed();
+  std::vector<std::uint64_t> missing;
+  if (!o.merge)
+    for (std::uint64_t i = share > 0 ? static_cast<std::uint64_t>(share - 1) : 0; i < all;
+         i += static_cast<std::uint64_t>(shares))
+      if (!store.has(i)) missing.push_back(i);
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  bool interrupted = false;
+  {
+    const Interrupt interrupt;
+    Progress progress("sweep " + stem_of(plan.file), missing.size(), o.quiet || o.json);
+    std::size_t count = 0;
+    run_pool(
+        plan, missing, o.jobs > 0 ? o.jobs : cores,
+        [&](const SweepResult& result) {
+          store.add(result);
+          progress.update(++count);
+        },
+        [&] { return !(interrupted = interrupt.requested()); });
+  }
+  if (share > 0) {
+    if (!o.quiet) fmt::print("share {}/{}: {} results in {}\n", share, shares, store.results().size(), folder.string());
+    return interrupted ? INTERRUPTED : DONE;
+  }
+  const int code = conclude(o, plan, store);
+  return interrupted ? INTERRUPTED : code;
+}
+
+}  // namespace
+
+Command add_sweep_command(CLI::App& program) {
+  auto options = std::make_shared<SweepOptions>();
+  SweepOptions& o = *options;
+  CLI::App* app = program.add_subcommand("sweep", "many runs: the product of settings and seeds, with statistics");
+  app->add_option("sweep", o.file, "sweep file (.yaml)")->required();
+  app->add_option("--out", o.out, "folder; what is in it is not run again (default: runs/sweep-NAME)")
+      ->type_name("DIR");
+  app->add_option("--jobs", o.jobs, "runs at a time (default: one a core)")->check(CLI::Range(1, 4096));
+  app->add_option("--share", o.share, "carry out only the NUMBER-th of OF equal shares, into a file of its own")
+      ->type_name("NUMBER/OF");
+  app->add_flag("--merge", o.merge, "take over what shares have done, run nothing");
+  app->add_flag("--retry", o.retry, "repeat the runs that failed");
+  app->add_flag("--count", o.count, "print how many runs there are, and end");
+  app->add_flag("--yes", o.yes, "yes, more than 20000 runs");
+  app->add_flag("--json", o.json, "print results.json on stdout and nothing else");
+  app->add_flag("--quiet", o.quiet, "no progress and no table");
+  app->footer(
+      "Examples:\n  heartservo sweep scenes/sweeps/latency.yaml\n"
+      "  heartservo sweep scenes/sweeps/latency.yaml --share 1/4 --out swept\n"
+      "The folder holds results.csv, results.json and report.html. An interrupted sweep goes on when it is run again.");
+  return {app, [options] { return run_sweep(*options); }};
+}
+
+}  // namespace heartservo::tools
