@@ -11,7 +11,7 @@ namespace heartservo::tracking {
 enum class FrameStatus {
   OK,          ///< the picture is whole
   UNREADABLE,  ///< the frame exists but its picture is broken; `grey` is empty, `note` says why
-  NOT_LIVE,    ///< a camera's picture that shows no living scene (frozen, or no signal): for the record, not to be tracked
+  NOT_LIVE,    ///< a camera's picture of no living scene (frozen, or no signal): for the record, not to be tracked
 };
 
 /// One picture of the endoscope. The pixels are shared, not copied (cv::Mat).

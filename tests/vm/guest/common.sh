@@ -14,7 +14,7 @@ timeout 120 "$HEARTSERVO" --version || echo "FAIL the program does not start"
 check() {
   local name=$1 limit=$2 code
   shift 2
-  timeout --kill-after=5 "$limit" "$@" >/tmp/out 2>/tmp/err
+  timeout --kill-after=60 "$limit" "$@" >/tmp/out 2>/tmp/err
   code=$?
   if [ $code -eq 0 ]; then echo "PASS $name: $(tail -n 1 /tmp/out | cut -c1-160)"; else
     echo "FAIL $name: ended with $code: $(cat /tmp/out /tmp/err | tail -n 4 | tr '\n' ' ' | cut -c1-600)"
@@ -26,7 +26,7 @@ check() {
 refused() {
   local name=$1 wanted=$2 text=$3 code
   shift 3
-  timeout --kill-after=5 90 "$@" >/tmp/out 2>/tmp/err
+  timeout --kill-after=60 90 "$@" >/tmp/out 2>/tmp/err
   code=$?
   if [ $code -eq "$wanted" ] && [ "$(wc -l </tmp/err)" -eq 1 ] && grep -qF -e "$text" /tmp/err; then
     echo "PASS $name: $(cut -c1-200 /tmp/err)"

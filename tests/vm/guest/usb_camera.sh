@@ -24,7 +24,7 @@ with() {
   local name=$1 format=$2 fault=$3 at=$4 seconds=$5 out=usb_$3_$2
   shift 5
   plug --fault $fault $at
-  timeout --kill-after=5 60 "$HEARTSERVO" capture /dev/video0,format=$format,give-up-s=20 --seconds $seconds --quiet --out $out >/tmp/out 2>/tmp/err
+  timeout --kill-after=60 60 "$HEARTSERVO" capture /dev/video0,format=$format,give-up-s=20 --seconds $seconds --quiet --out $out >/tmp/out 2>/tmp/err
   local code=$?
   [ $code -eq 0 ] || echo "FAIL $name: ended with $code: $(cat /tmp/err)"
   says "$name" $out/summary.json "$@"

@@ -5,7 +5,7 @@
 recording() {
   local name=$1 source=$2 faults=$3 out=recorded_$3
   shift 3
-  timeout --kill-after=5 120 "$HEARTSERVO" capture "$source" --quiet --out $out >/tmp/out 2>/tmp/err &
+  timeout --kill-after=100 200 "$HEARTSERVO" capture "$source" --quiet --out $out >/tmp/out 2>/tmp/err &
   local job=$!
   until_there $out.partial/frames.csv 40 || echo "FAIL $name: does not start: $(cat /tmp/err)"
   sleep 1
@@ -23,7 +23,7 @@ recording() {
 servoing() {
   local name=$1 source=$2 faults=$3 out=servo_$3
   shift 3
-  timeout --kill-after=5 120 "$HEARTSERVO" servo "v4l2:$source" --roi 200,160,100,100 --settle-s 0 --quiet --out $out >/tmp/out 2>/tmp/err &
+  timeout --kill-after=100 200 "$HEARTSERVO" servo "v4l2:$source" --roi 200,160,100,100 --settle-s 0 --quiet --out $out >/tmp/out 2>/tmp/err &
   local job=$!
   until_there $out.partial 40 || echo "FAIL $name: does not start: $(cat /tmp/err)"
   sleep 1
