@@ -1,5 +1,6 @@
 #include "tools/sweep/sweep_pool.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
