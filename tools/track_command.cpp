@@ -1,5 +1,6 @@
 // heartservo track: follows a region with one or several trackers side by side.
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <chrono>
@@ -243,6 +244,21 @@ std::optional<sim::Scene> depth_rail_of(const TrackOptions& o) {
   return scene;
 }
 
+// Lanes lie region by region. Regions go to as many cores as there are; trackers that are compared on one region come
+// one after the other, so that they do not take each other's time. ViSP's are not made for threads.
+void follow(const tracking::Frame& frame, const std::vector<TrackTruth>& truths, bool threaded,
+            std::vector<TrackLane>& lanes) {
+  const std::size_t regions = truths.size(), of_region = lanes.size() / regions;
+  const auto follow_region = [&](std::size_t region) {
+    for (std::size_t i = region * of_region; i < (region + 1) * of_region; ++i)
+      lanes[i].follow(frame, truths[region], now_s);
+  };
+  if (regions > 1 && threaded)
+    tbb::parallel_for(std::size_t{0}, regions, follow_region);
+  else
+    for (std::size_t region = 0; region < regions; ++region) follow_region(region);
+}
+
 void show(Window& window, const tracking::Frame& frame, const std::vector<TrackLane>& lanes) {
   std::vector<Window::Outline> outlines;
   for (const auto& lane : lanes) add_outline(lane.track(), outlines);
@@ -257,7 +273,9 @@ int run_track(TrackOptions o) {
   if (!o.truth.empty()) truth_file.emplace(o.truth);
   const CornerTruth* truth = truth_file ? &*truth_file : nullptr;
   const Tracked tracked = opened(o, truth);
-  (void)chosen_trackers(o, tracked.scene);  // throws before anything is read
+  const auto names = chosen_trackers(o, tracked.scene);  // throws before anything is read
+  const bool threaded =
+      std::none_of(names.begin(), names.end(), [](const auto& name) { return name.starts_with("visp_"); });
   tracking::FrameSource& frames = tracked.table->frames();
   // Without a calibration the homography stays on the pixels: a guessed lens would only add its own error.
   const bool calibrated = !o.artificial && (!tracked.scene.is_recorded() || !tracked.scene.camera.calibration.empty());
@@ -284,18 +302,15 @@ int run_track(TrackOptions o) {
   const std::size_t expected = frames.frame_count().value_or(0);
   TrackAlbum album(expected, source.kind, frame);
   std::size_t count = 0, with_truth = 0;
+  std::vector<TrackTruth> truths(regions);
   bool interrupted = false;
   {
     const Interrupt interrupt;
     Progress progress("track " + stem_of(o.run.source), expected, o.run.quiet);
     do {
-      TrackTruth known;
-      for (std::size_t i = 0; i < lanes.size(); ++i) {
-        const bool another = i == 0 || lanes[i].began().number != lanes[i - 1].began().number;
-        if (another) known = sources[i * regions / lanes.size()].at(frame);
-        lanes[i].follow(frame, known, now_s);
-      }
-      if (regions > 1) known = source.at(frame);
+      for (std::size_t i = 0; i < regions; ++i) truths[i] = sources[i].at(frame);
+      follow(frame, truths, threaded, lanes);
+      const TrackTruth& known = truths.front();
       with_truth += known.corners.has_value() || known.point.allFinite();
       album.look_at(frame, lanes, known);
       if (window) show(*window, frame, lanes);

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "sim/endoscope/huge_pages.hpp"
 #include "sim/heart/landmark_options.hpp"
 #include "tracking/settings/fields.hpp"
 
@@ -57,7 +58,7 @@ class TissueTexture {
  private:
   int size_ = 0;
   double texels_per_m_ = 0;
-  std::vector<std::uint32_t> texels_;
+  std::vector<std::uint32_t, HugePageAllocator<std::uint32_t>> texels_;
 };
 
 }  // namespace heartservo::sim

@@ -1,125 +1,23 @@
-// Every tracker of the registry on the same frames, templates of 40, 80 and 120 px: time per frame, mean corner error
+// Every tracker of the registry on the same frames, templates of 40, 80 and 120 px: CPU time per frame, mean corner error
 // and lost frames as counters, and how many times esm's time it takes (`times_esm`; at visp_esm: the gain over ViSP).
-//
-// The motion is like the comparison's sequence b: a circle of radius 30 px, rotation +-20 degrees,
-// scale +-10 %, perspective 2e-4 and 1.5e-4 per px, noise of 1 grey level; there and back again.
 #include <benchmark/benchmark.h>
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <chrono>
 #include <map>
-#include <random>
 
-#include "tracking/frames/frame.hpp"
-#include "tracking/planar/registry.hpp"
+#include "tests/bench/speed/wave_sequence.hpp"
 
 namespace {
 
 using namespace heartservo;
-using Clock = std::chrono::steady_clock;
-
-constexpr int kSide = 512, kFrames = 100;
-
-struct Sequence {
-  std::vector<tracking::Frame> frames;
-  std::vector<Eigen::Matrix3d> H;
-};
-
-Eigen::Matrix3d motion(int k) {
-  const double t = 2 * M_PI * k, angle = 20 * M_PI / 180 * std::sin(t / 80), scale = 1 + 0.1 * std::sin(t / 67);
-  Eigen::Matrix3d H, centred = Eigen::Matrix3d::Identity();
-  H << scale * std::cos(angle), -scale * std::sin(angle), 30 * std::sin(t / 100), scale * std::sin(angle),
-      scale * std::cos(angle), 30 - 30 * std::cos(t / 100), 2e-4 * std::sin(t / 90), 1.5e-4 * std::sin(t / 60), 1;
-  centred(0, 2) = centred(1, 2) = kSide / 2.0;
-  return centred * H * centred.inverse();
-}
-
-// Twelve waves of 12 to 60 px in as many directions: no second place looks like the region, as it would with fewer.
-cv::Mat picture(const Eigen::Matrix3d& H) {
-  struct Wave {
-    double x, y, phase;
-  };
-  static const std::vector<Wave> waves = [] {
-    std::mt19937_64 random(11);
-    std::uniform_real_distribution<double> uniform(0, 1);
-    std::vector<Wave> result;
-    for (int i = 0; i < 12; ++i) {
-      const double w = 2 * M_PI / (12 * std::pow(5, uniform(random))), direction = 2 * M_PI * uniform(random);
-      result.push_back({w * std::cos(direction), w * std::sin(direction), 2 * M_PI * uniform(random)});
-    }
-    return result;
-  }();
-  cv::Mat image(kSide, kSide, CV_32FC1);
-  const Eigen::Matrix3d H_inverse = H.inverse();
-  for (int v = 0; v < kSide; ++v)
-    for (int u = 0; u < kSide; ++u) {
-      const Eigen::Vector2d p = (H_inverse * Eigen::Vector3d(u, v, 1)).hnormalized();
-      double grey = 128;
-      for (const Wave& wave : waves) grey += 16 * std::sin(wave.x * p.x() + wave.y * p.y() + wave.phase);
-      image.at<float>(v, u) = static_cast<float>(grey);
-    }
-  return image;
-}
-
-const Sequence& sequence() {
-  static const Sequence result = [] {
-    Sequence s;
-    std::mt19937_64 random(7);
-    std::normal_distribution<float> noise(0, 1);
-    for (int k = 0; k < kFrames; ++k) {
-      s.H.push_back(motion(k));
-      s.frames.emplace_back();
-      cv::Mat_<float> grey = picture(s.H.back());
-      for (float& v : grey) v += noise(random);
-      grey.convertTo(s.frames.back().grey, CV_8U);
-    }
-    return s;
-  }();
-  return result;
-}
-
-// A tracker on its way through the sequence, there and back.
-class Walk {
- public:
-  Walk(const std::string& name, double side)
-      : tracker_(tracking::trackers().make(name, tracking::Camera{}, tracking::TrackerOptions{})),
-        region_(tracking::rectangle((kSide - side) / 2, (kSide - side) / 2, side, side)) {
-    tracker_->start(sequence().frames[0], region_);
-  }
-
-  void step() {
-    ++k_;
-    const int phase = k_ % (2 * kFrames - 2);
-    const auto at = static_cast<std::size_t>(phase < kFrames ? phase : 2 * kFrames - 2 - phase);
-    tracking::Frame frame = sequence().frames[at];
-    frame.time_s = 0.008 * k_;
-    const auto begin = Clock::now();
-    const tracking::Track track = tracker_->track(frame);
-    seconds += std::chrono::duration<double>(Clock::now() - begin).count();
-    if (track.state == tracking::TrackState::LOST) {
-      ++lost;
-      return;
-    }
-    const tracking::Quad truth = tracking::transform(sequence().H[at], region_);
-    for (std::size_t i = 0; i < 4; ++i) error_px += (track.corners[i] - truth[i]).norm() / 4;
-    ++followed;
-  }
-
-  double seconds = 0, error_px = 0, lost = 0, followed = 0;
-
- private:
-  std::unique_ptr<tracking::TargetTracker> tracker_;
-  tracking::Quad region_;
-  int k_ = 0;
-};
+using bench::kFrames;
+using bench::Walk;
 
 double esm_seconds(int side) {
   static std::map<int, double> known;
   if (!known.count(side)) {
     Walk walk("esm", side);
     for (int k = 0; k < kFrames; ++k) walk.step();
-    known[side] = walk.seconds / kFrames;
+    known[side] = walk.mean_s();
   }
   return known[side];
 }
@@ -128,9 +26,9 @@ void tracker(benchmark::State& state, const std::string& name) {
   const double esm = esm_seconds(static_cast<int>(state.range(0)));
   Walk walk(name, static_cast<double>(state.range(0)));
   for (auto _ : state) walk.step();
-  state.counters["error_px"] = walk.error_px / std::max(1.0, walk.followed);
+  state.counters["error_px"] = walk.mean_error_px();
   state.counters["lost"] = walk.lost;
-  state.counters["times_esm"] = walk.seconds / static_cast<double>(state.iterations()) / esm;
+  state.counters["times_esm"] = walk.mean_s() / esm;
 }
 
 const bool registered = [] {

@@ -97,7 +97,7 @@ Finding cameras() {
   int seen = 0, usable = 0;
   for (const auto& entry : fs::directory_iterator("/dev", error)) {
     const std::string name = entry.path().filename();
-    if (!name.starts_with("video") || name.find_first_not_of("0123456789", 5) != std::string::npos) continue;
+    if (name.rfind("video", 0) != 0 || name.find_first_not_of("0123456789", 5) != std::string::npos) continue;
     ++seen;
     usable += ::access(entry.path().c_str(), R_OK | W_OK) == 0;
   }

@@ -71,7 +71,7 @@ struct StereoMatcher::Workspace {
   Eigen::Vector2d centre;                 // normalised, left
   Eigen::Vector2d across;                 // unit, normalised plane of the right camera, off the epipolar line
   std::vector<Eigen::Vector2d> plane;     // left normalised points, less the centre
-  std::vector<float> x, y, zero, grey, inside, residual, weight, sorted;
+  std::vector<float> x, y, zero, grey, inside, residual, weight, sorted, scratch;
   std::vector<Eigen::Matrix<double, 2, 7>> geometry;
 
   Eigen::Vector3d right_ray(std::size_t i, double inverse_depth) const {
@@ -96,7 +96,7 @@ struct StereoMatcher::Workspace {
 // The window's grey values and rays at a level of the pyramid.
 void StereoMatcher::Workspace::learn(int level, double side_px) {
   const int side = std::max(9, static_cast<int>(std::lround(side_px)) >> level);
-  patch = make_patch(left_pyramid.level(level), camera.left, G, side, side);
+  make_patch(left_pyramid.level(level), camera.left, G, side, side, patch, scratch);
   const std::size_t n = patch.size();
   plane.resize(n);
   geometry.resize(n);

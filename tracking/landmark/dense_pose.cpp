@@ -6,14 +6,15 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "tracking/planar/simd/select.hpp"
 #include "tracking/settings/errors.hpp"
 
 namespace heartservo::tracking {
 
 namespace {
 
-constexpr int kBatch = 32;              // rows added to the normal equations at once
 constexpr int kSettled = 1;             // iterations after which the pixels stay the same
 constexpr int kLastWeighing = 8;        // iterations; pixels that come and go must not keep the pose from settling
 constexpr double kConverged = 1e-3;     // squared length of a step in standard deviations
@@ -65,10 +66,13 @@ DenseRefiner::DenseRefiner(const Camera& camera, const DenseOptions& options)
   if (!problems.empty()) throw ConfigError(fmt::format("dense pose: {}", fmt::join(problems, "; ")));
 }
 
+simd::DensePixels DenseRefiner::pixels() {
+  return {count_, ray_x_.data(), ray_y_.data(), grey_.data(), residual_.data(), weight_.data()};
+}
+
 void DenseRefiner::collect(const cv::Mat& grey, const LandmarkTemplate& plate, double side_m,
                            const Eigen::Isometry3d& T) {
-  pixels_.clear();
-  region_pixels_ = 0;
+  count_ = region_pixels_ = 0;
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
   for (const auto& corner : project_square(camera_, T, side_m)) {
     low = low.cwiseMin(corner);
@@ -80,62 +84,58 @@ void DenseRefiner::collect(const cv::Mat& grey, const LandmarkTemplate& plate, d
   const auto to = [](double a, int size) {
     return std::min(size - 1, static_cast<int>(std::ceil(std::min(a, 1e6))) + 3);
   };
-  const PlateView view(T, side_m);
-  for (int v = from(low.y()); v <= to(high.y(), grey.rows); ++v)
-    for (int u = from(low.x()); u <= to(high.x(), grey.cols); ++u) {
-      const Eigen::Vector3d ray = rays_.at(u, v), arm = view.arm(ray) / view.half_side_m;
-      if (!plate.covers(view.right.dot(arm), view.down.dot(arm))) continue;  // also where there is no ray
-      ++region_pixels_;
-      const double g = grey.at<std::uint8_t>(v, u);
-      if (g > 0 && g < options_.saturated_grey) pixels_.push_back({ray, g, 0, 1});
-    }
+  const int left = from(low.x()), top = from(low.y()), right = to(high.x(), grey.cols), bottom = to(high.y(), grey.rows);
+  if (right < left || bottom < top) return;
+  const auto n = static_cast<std::size_t>(right - left + 1), most = n * static_cast<std::size_t>(bottom - top + 1);
+  for (auto* values : {&ray_x_, &ray_y_, &grey_, &residual_, &weight_, &sizes_})
+    simd::at_least(*values, most + 2 * simd::kDensePad);
+  const simd::DenseJob job = simd::dense_job(plate, PlateView(T, side_m), DenseLight::Zero());
+  for (int v = top; v <= bottom; ++v)
+    count_ += simd::collect_row(job, rays_.row(left, v, n), grey.ptr(v) + left, n,
+                                static_cast<float>(options_.saturated_grey), ray_x_.data() + count_,
+                                ray_y_.data() + count_, grey_.data() + count_, region_pixels_);
+  std::fill_n(weight_.begin(), count_, 1.0F);
+  std::fill_n(weight_.begin() + static_cast<std::ptrdiff_t>(count_), simd::kDensePad, 0.0F);
 }
 
 bool DenseRefiner::first_light(const LandmarkTemplate& plate, const PlateView& view, DenseLight& light) {
   // Gain and bias alone: the finer parameters need a pose that fits.
+  simd::sample_plate(simd::dense_job(plate, view, light), pixels());
   Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
   Eigen::Vector2d b = Eigen::Vector2d::Zero(), x;
-  DenseRow row;
-  double grey;
-  for (Pixel& p : pixels_) {
-    row(6) = 0;
-    predict_grey(plate, view, light, p.ray, grey, row);
-    const Eigen::Vector2d r(p.residual = row(6), 1);
-    A += r * r.transpose();
-    b += r * p.grey;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double T = static_cast<double>(residual_[i]), grey = static_cast<double>(grey_[i]);
+    A(0, 0) += T * T, A(0, 1) += T;
+    b(0) += T * grey, b(1) += grey;
   }
+  A(1, 0) = A(0, 1), A(1, 1) = static_cast<double>(count_);
   if (!solve_scaled<2>(A, b, x) || !(x(0) > 0)) return false;
   light(0) = x(0), light(7) = x(1);
-  for (Pixel& p : pixels_) p.residual = p.grey - x(0) * p.residual - x(1);
+  const auto gain = static_cast<float>(x(0)), bias = static_cast<float>(x(1));
+  for (std::size_t i = 0; i < count_; ++i) residual_[i] = grey_[i] - gain * residual_[i] - bias;
   return true;
 }
 
-void DenseRefiner::subtract(const LandmarkTemplate& plate, const PlateView& view, const DenseLight& light) {
-  DenseRow row;
-  double grey;
-  for (Pixel& p : pixels_)
-    if (predict_grey(plate, view, light, p.ray, grey, row)) p.residual = p.grey - grey;
-}
-
 void DenseRefiner::weigh() {
-  sizes_.clear();
-  for (const Pixel& p : pixels_) sizes_.push_back(std::abs(p.residual));
-  if (sizes_.empty()) return;
-  const auto middle = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
-  std::nth_element(sizes_.begin(), middle, sizes_.end());
-  const double bound = options_.outlier_sigmas * std::max(kSmallestSigma, 1.4826 * *middle);
-  for (Pixel& p : pixels_) {
-    const double over = std::max(0.0, std::abs(p.residual) / bound - 1), w = std::max(0.0, 1 - over * over);
-    p.weight = w * w;
+  if (count_ == 0) return;
+  for (std::size_t i = 0; i < count_; ++i) sizes_[i] = std::abs(residual_[i]);
+  std::fill_n(sizes_.begin() + static_cast<std::ptrdiff_t>(count_), simd::kDensePad,
+              std::numeric_limits<float>::infinity());
+  const double median = static_cast<double>(simd::select(sizes_.data(), count_, count_ / 2));
+  const auto inverse = static_cast<float>(1 / (options_.outlier_sigmas * std::max(kSmallestSigma, 1.4826 * median)));
+  for (std::size_t i = 0; i < count_; ++i) {
+    const float over = std::max(0.0F, sizes_[i] * inverse - 1), w = std::max(0.0F, 1 - over * over);
+    weight_[i] = w * w;
   }
 }
 
 double DenseRefiner::grey_variance() const {
   double w = 0, sum = 0, squares = 0;
-  for (const Pixel& p : pixels_) {
-    w += p.weight;
-    sum += p.weight * p.grey;
-    squares += p.weight * p.grey * p.grey;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double weight = static_cast<double>(weight_[i]), grey = static_cast<double>(grey_[i]);
+    w += weight;
+    sum += weight * grey;
+    squares += weight * grey * grey;
   }
   return w > 0 ? squares / w - sum * sum / (w * w) : 0;
 }
@@ -143,28 +143,8 @@ double DenseRefiner::grey_variance() const {
 DenseRefiner::Normal DenseRefiner::normal_equations(const LandmarkTemplate& plate, const PlateView& view,
                                                     const DenseLight& light) {
   Normal A = Normal::Zero();
-  Eigen::Matrix<double, kDenseParameters + 1, kBatch> rows;
-  DenseRow row;
-  double grey;
-  int filled = 0;
-  const auto add = [&] {
-    rows.rightCols(kBatch - filled).setZero();
-    A.selfadjointView<Eigen::Lower>().rankUpdate(rows);
-    filled = 0;
-  };
-  for (Pixel& p : pixels_) {
-    if (!predict_grey(plate, view, light, p.ray, grey, row)) {
-      p.weight = 0;
-      continue;
-    }
-    p.residual = p.grey - grey;
-    if (p.weight == 0) continue;
-    const double root = std::sqrt(p.weight);
-    rows.col(filled) << root * row, root * p.residual;
-    if (++filled == kBatch) add();
-  }
-  add();
-  return A.selfadjointView<Eigen::Lower>();
+  simd::add_normal(simd::dense_job(plate, view, light), pixels(), A.data());
+  return A.selfadjointView<Eigen::Upper>();
 }
 
 DensePose DenseRefiner::refine(const cv::Mat& grey, const LandmarkTemplate& plate, double side_m,
@@ -181,10 +161,10 @@ DensePose DenseRefiner::refine(const cv::Mat& grey, const LandmarkTemplate& plat
   Normal A;
   for (result.iterations = 0; result.iterations < options_.max_iterations; ++result.iterations) {
     if (result.iterations <= kSettled) collect(grey, plate, side_m, T);
-    if (pixels_.size() < static_cast<std::size_t>(options_.smallest_pixels)) return result;
+    if (count_ < static_cast<std::size_t>(options_.smallest_pixels)) return result;
     const PlateView view(T, side_m);
     if (result.iterations == 0 && !first_light(plate, view, light)) return result;
-    if (result.iterations > 0 && result.iterations <= kSettled) subtract(plate, view, light);
+    if (result.iterations > 0 && result.iterations <= kSettled) simd::predict(simd::dense_job(plate, view, light), pixels());
     if (result.iterations < kLastWeighing) weigh();  // later by the differences of the iteration before, which are nearly the same
     A = normal_equations(plate, view, light);
     if (!solve_scaled<kDenseParameters>(A.topLeftCorner<kDenseParameters, kDenseParameters>(),
@@ -204,14 +184,16 @@ DensePose DenseRefiner::refine(const cv::Mat& grey, const LandmarkTemplate& plat
     result.pixels = count;
     result.covariance = variance * inverse.topLeftCorner<6, 6>();
     converged = result.iterations > kSettled &&
-                step.dot(A.topLeftCorner<kDenseParameters, kDenseParameters>() * step) < kConverged * variance;
+                step.dot(A.topLeftCorner<kDenseParameters, kDenseParameters>() * step) <
+                    kConverged * std::max(variance, kSmallestSigma * kSmallestSigma);
     if (converged) break;
   }
   result.share = result.pixels / static_cast<double>(std::max<std::size_t>(1, region_pixels_));
   T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
   result.T_camera_target = T;
   result.light = light;
-  result.likeness = 1 - result.rms_grey * result.rms_grey / std::max(1e-9, grey_variance());
+  const double noise = std::max(result.rms_grey, kSmallestSigma);  // a plain picture is like nothing
+  result.likeness = 1 - noise * noise / std::max(1e-9, grey_variance());
   result.valid = converged && result.share >= options_.smallest_share &&
                  result.likeness >= options_.smallest_likeness && result.covariance.allFinite();
   return result;

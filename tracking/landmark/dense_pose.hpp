@@ -10,6 +10,8 @@
 #include "tracking/landmark/dense_equations.hpp"
 #include "tracking/landmark/ray_map.hpp"
 #include "tracking/landmark/reprojection.hpp"
+#include "tracking/landmark/simd/dense_kernel.hpp"
+#include "tracking/planar/simd/aligned.hpp"
 
 namespace heartservo::tracking {
 
@@ -48,15 +50,11 @@ class DenseRefiner {
   DensePose refine(const cv::Mat& grey, const LandmarkTemplate& plate, double side_m, const Eigen::Isometry3d& start);
 
  private:
-  struct Pixel {
-    Eigen::Vector3d ray;
-    double grey, residual, weight;
-  };
-  using Normal = Eigen::Matrix<double, kDenseParameters + 1, kDenseParameters + 1>;  // of (row, residual)
+  using Normal = Eigen::Matrix<double, simd::kDenseRow, simd::kDenseRow, Eigen::RowMajor>;  // of (row, residual)
 
+  simd::DensePixels pixels();
   void collect(const cv::Mat& grey, const LandmarkTemplate& plate, double side_m, const Eigen::Isometry3d& T);
   bool first_light(const LandmarkTemplate& plate, const PlateView& view, DenseLight& light);
-  void subtract(const LandmarkTemplate& plate, const PlateView& view, const DenseLight& light);
   void weigh();
   double grey_variance() const;  // of the pixels that count
   Normal normal_equations(const LandmarkTemplate& plate, const PlateView& view, const DenseLight& light);
@@ -64,8 +62,9 @@ class DenseRefiner {
   Camera camera_;
   DenseOptions options_;
   RayMap rays_;
-  std::vector<Pixel> pixels_;
-  std::vector<double> sizes_;  // of residuals, to find their median
+  std::size_t count_ = 0;  // of pixels
+  simd::AlignedFloats ray_x_, ray_y_, grey_, residual_, weight_;
+  simd::AlignedFloats sizes_;  // of residuals, to find their median
   std::size_t region_pixels_ = 0;
 };
 

@@ -48,6 +48,8 @@ LandmarkTemplate::LandmarkTemplate(const cv::Mat& plate, double blur, bool blurr
       float* node = &planes_[2 * (static_cast<std::size_t>(j) * kSize + i)];
       node[0] = grey.at<float>(j, i);
       node[1] = softer.at<float>(j, i) - node[0];
+      const auto word = [](float v) { return static_cast<std::uint32_t>(std::lround(v * kPackedPerGrey)) & 0xffffU; };
+      packed_.push_back(static_cast<std::int32_t>(word(node[1]) << 16 | word(node[0])));
     }
   reach_ = 1 - std::max(kClear * std::sqrt(2) * blur, 6.0 / kSize);
 }

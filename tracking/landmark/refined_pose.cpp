@@ -31,7 +31,7 @@ RefinedPose refined_square_pose(const Camera& camera, const Quad& corners, doubl
   for (int i = 0; i < 4; ++i) normalised[i] = camera.normalise(corners[i]);
   std::array<Eigen::Isometry3d, 2> starts;
   if (!is_convex(corners) || !is_convex(normalised) || area(corners) < SMALLEST_AREA) return result;
-  if (!ippe_square_poses(normalised, side_m, starts))  // OpenCV has none for a square that faces the camera exactly
+  if (!ippe_square_poses(normalised, side_m, starts))
     starts.fill(linear_square_pose(normalised, side_m));
 
   for (int i = 0; i < 2; ++i) result.solutions[i].T_camera_target = refine_pose(camera, starts[i], side_m, corners);

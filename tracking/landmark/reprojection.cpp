@@ -12,6 +12,8 @@ namespace heartservo::tracking {
 namespace {
 
 constexpr int MAX_ITERATIONS = 50;
+constexpr double kSmallestStep = 1e-11;  // of the distance, and rad
+constexpr double kRounding = 1e-7;       // the residual does not tell steps this small apart
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& a) {
   Eigen::Matrix3d S;
@@ -88,8 +90,8 @@ Eigen::Isometry3d refine_pose(const Camera& camera, const Eigen::Isometry3d& sta
     } else {
       lambda *= 10;
     }
-    const bool tiny = step.head<3>().norm() < 1e-12 * T.translation().norm() && step.tail<3>().norm() < 1e-12;
-    if (tiny || lambda > 1e8) break;
+    const double size = std::max(step.head<3>().norm() / T.translation().norm(), step.tail<3>().norm());
+    if (size < kSmallestStep || (!better && size < kRounding) || lambda > 1e8) break;
   }
   T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
   return T;

@@ -41,8 +41,8 @@ class CorrelationAligner final : public PatchAligner {
     const cv::Rect box(
         cv::Point(static_cast<int>(std::ceil(low.x())), static_cast<int>(std::ceil(low.y()))) - origin,
         cv::Point(static_cast<int>(std::floor(high.x())) + 1, static_cast<int>(std::floor(high.y())) + 1) - origin);
-    const cv::Rect clipped = box & cv::Rect(0, 0, level.image.cols, level.image.rows);
-    template_ = level.image(clipped).clone();
+    const cv::Rect clipped = box & cv::Rect(0, 0, level.bytes.cols, level.bytes.rows);
+    template_ = level.bytes(clipped).clone();
     corner_ = clipped.tl() + origin;
   }
 
@@ -62,9 +62,9 @@ class CorrelationAligner final : public PatchAligner {
                              corner_.y + static_cast<int>(std::lround(shift.y())));
     const cv::Rect wanted(expected - origin - cv::Point(radius, radius),
                           cv::Size(template_.cols + 2 * radius, template_.rows + 2 * radius));
-    const cv::Rect window = wanted & cv::Rect(0, 0, level.image.cols, level.image.rows);
+    const cv::Rect window = wanted & cv::Rect(0, 0, level.bytes.cols, level.bytes.rows);
     if (window.width < template_.cols || window.height < template_.rows) return a;
-    cv::matchTemplate(level.image(window), template_, score_, cv::TM_CCOEFF_NORMED);
+    cv::matchTemplate(level.bytes(window), template_, score_, cv::TM_CCOEFF_NORMED);
     cv::patchNaNs(score_, -1);
     cv::Point peak;
     cv::minMaxLoc(score_, nullptr, nullptr, nullptr, &peak);

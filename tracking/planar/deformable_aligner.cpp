@@ -1,8 +1,8 @@
 #include "tracking/planar/deformable_aligner.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "tracking/planar/band_cholesky.hpp"
 #include "tracking/planar/bend_equations.hpp"
 #include "tracking/planar/esm_aligner.hpp"
 #include "tracking/planar/sl3.hpp"
@@ -30,13 +30,13 @@ class DeformableAligner final : public PatchAligner {
     const Patch& patch = homography_->patch(0);
     grid_.emplace(bend_of(side_x, side_y, options_.cell_px), patch);
     half_side_px_ = 0.5 * std::max(side_x, side_y);
-    usable_ = 0;
-    for (const float u : patch.usable) usable_ += static_cast<double>(u);
+    reference_ = simd::EsmTemplate(patch);
+    usable_ = reference_.usable;
     buffers_.resize(patch.size());
     equations_.resize(points());
     differences_ = grid_->spline().differences();
     step_.resize(equations_.Jtr.size());
-    solver_ = Eigen::LDLT<Eigen::MatrixXd>(equations_.Jtr.size());
+    band_ = band_of(grid_->spline());
   }
 
   const Patch& patch(int level) const override { return homography_->patch(level); }
@@ -65,23 +65,20 @@ class DeformableAligner final : public PatchAligner {
   bool bend(const PyramidLevel& picture, const Alignment& start, Alignment& a) {
     const Patch& patch = homography_->patch(0);
     before_ = a.bend;
-    for (int i = 0; i < options_.bend_iterations; ++i, ++a.iterations) {
+    for (int i = 0; i < options_.bend_iterations; ++i) {
+      ++a.iterations;
       const BentPoints bent = grid_->bend(a.bend);
-      warp(picture, camera_, a.G_plane_patch, patch, Interpolation::CUBIC, buffers_.grey.data(), buffers_.inside.data(),
-           bent);
+      warp(picture, camera_, a.G_plane_patch, patch, Interpolation::CUBIC, buffers_.grey.data(), nullptr, bent);
       const Light light{a.gain, a.bias, bent.gain_offset};
       AlignmentPass pass;
-      weigh_points(patch, light, buffers_, pass);
+      weigh_points(reference_, light, buffers_, pass);
       if (pass.points < kSmallestShare * usable_) return false;
-      judge(patch, pass, light, a);
-      equations_.JtJ.setZero();
-      equations_.Jtr.setZero();
+      equations_.clear(band_);
       add_bend_pass(patch, light, *grid_, buffers_, equations_);
       add_prior(std::max(1.0, pass.noise_grey * pass.noise_grey), a);
-      solver_.compute(equations_.JtJ);
-      if (solver_.info() != Eigen::Success || !(solver_.vectorD().minCoeff() > 0)) return false;
-      step_ = solver_.solve(equations_.Jtr);
-      if (!step_.allFinite()) return false;
+      const double mean_of_greys = mean_grey();
+      step_ = equations_.Jtr;
+      if (!solve_banded(equations_.JtJ, band_, step_) || !step_.allFinite()) return false;
       const Eigen::Map<const Eigen::Matrix3Xd> moves(step_.data(), 3, points());
       a.bend -= moves;
       a.bias -= step_(3 * points());
@@ -90,8 +87,10 @@ class DeformableAligner final : public PatchAligner {
       a.bend.row(2).array() -= mean;
       a.gain =
           std::clamp(wanted_gain, start.gain / (1 + options_.gain_change), start.gain * (1 + options_.gain_change));
-      a.bias += (wanted_gain - a.gain) * mean_grey();
-      if (moves.topRows<2>().cwiseAbs().maxCoeff() * half_side_px_ < options_.step_px) break;
+      a.bias += (wanted_gain - a.gain) * mean_of_greys;
+      const bool last = moves.topRows<2>().cwiseAbs().maxCoeff() * half_side_px_ < options_.step_px;
+      if (last || i + 1 == options_.bend_iterations) judge(pass, light, a);
+      if (last) break;
     }
     a.G_plane_patch = to_sl3(a.G_plane_patch * grid_->spline().split_homography(a.bend));
     return a.G_plane_patch.allFinite() && a.bend.allFinite();
@@ -138,10 +137,10 @@ class DeformableAligner final : public PatchAligner {
     }
   }
 
-  void judge(const Patch& patch, const AlignmentPass& pass, const Light& light, Alignment& a) const {
+  void judge(const AlignmentPass& pass, const Light& light, Alignment& a) const {
     a.noise_grey = pass.noise_grey;
     a.visible = usable_ > 0 ? pass.weight / usable_ : 0;
-    const Correlation c = correlation(patch, light, buffers_);
+    const Correlation c = correlation(reference_, light, buffers_, pass);
     a.correlation = c.believed;
     a.correlation_all = c.all;
   }
@@ -150,10 +149,11 @@ class DeformableAligner final : public PatchAligner {
   std::unique_ptr<PatchAligner> homography_;
   Camera camera_;
   std::optional<BentGrid> grid_;
+  simd::EsmTemplate reference_;
   AlignmentBuffers buffers_;
   BendEquations equations_;
   std::vector<SplineBend::Difference> differences_;
-  Eigen::LDLT<Eigen::MatrixXd> solver_;
+  int band_ = 0;
   Eigen::VectorXd step_;
   BendField before_{3, 0};
   double half_side_px_ = 1, usable_ = 0;

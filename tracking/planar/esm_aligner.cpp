@@ -15,7 +15,10 @@ constexpr int kSmallestSide = 9;            // points; a coarser template says n
 constexpr std::size_t kAffinePoints = 500;  // fewer tell a shift, but with glare on them no shape
 constexpr double kNotThere = 2 * kTukey;    // beside the place the texture itself is what differs
 constexpr double kKnownNoise = 0.8;         // share of the gradient's noise that is certainly there
-constexpr double kNear_px = 0.1;            // where bilinear sampling has done its part; twice that a level up
+constexpr double kNear_px = 0.25;           // where bilinear sampling has done its part
+constexpr double kNearCoarse_px = 0.1;      // of a coarse level: as little as its points tell
+constexpr double kLeftOfStep = 0.2;         // near the place, at most: how far off the next step would still be
+constexpr double kNewMatrix_px = 0.3;       // a step this long wants a new matrix after it
 constexpr int kLastIterations = 5;          // with cubic sampling
 constexpr double kSmallestShare = 0.3;      // of the template's points must be in the picture
 constexpr double kHopeless = 0.6;           // fit at a coarse level that no finer one mends
@@ -44,7 +47,7 @@ class EsmAligner final : public PatchAligner {
              int side_y) override {
     camera_ = camera;
     patches_.clear();
-    usable_.clear();
+    references_.clear();
     noise_.clear();
     grids_.clear();
     for (int level = 0; level < picture.levels(); ++level) {
@@ -52,9 +55,7 @@ class EsmAligner final : public PatchAligner {
       if (level > 0 && std::min(width, height) < kSmallestSide) break;
       patches_.push_back(make_patch(picture.level(level), camera, G, width, height));
       quieten_gradient(patches_.back());
-      double usable = 0;
-      for (const float u : patches_.back().usable) usable += static_cast<double>(u);
-      usable_.push_back(usable);
+      references_.emplace_back(patches_.back());
       noise_.push_back(gradient_noise(patches_.back()));
       if (options_.cell_px > 0) grids_.emplace_back(bend_of(side_x, side_y, options_.cell_px), patches_.back());
     }
@@ -70,6 +71,7 @@ class EsmAligner final : public PatchAligner {
     Alignment a = start;
     a.iterations = 0;
     moved_.setZero();
+    matrix_level_ = -1;
     start_gain_ = start.gain;
     wide_ = model != MotionModel::HOMOGRAPHY;
     coarsest = std::min({coarsest, picture.levels() - 1, static_cast<int>(patches_.size()) - 1});
@@ -78,7 +80,7 @@ class EsmAligner final : public PatchAligner {
     for (int level = coarsest; level >= 0; --level) {
       const MotionModel at_level = level > 0 ? coarse_model(level) : model;
       if (!descend(picture.level(level), level, Interpolation::LINEAR, at_level, options_.max_iterations,
-                   kNear_px * (1 << level), a))
+                   level > 0 ? kNearCoarse_px * (1 << level) : kNear_px, a))
         return a;
       a.converged = false;
       if (level > 0 && at_level != MotionModel::TRANSLATION && a.fit() < kHopeless) return a;
@@ -93,24 +95,32 @@ class EsmAligner final : public PatchAligner {
                                                                             : MotionModel::AFFINE;
   }
 
-  // Iterates until no corner moves by more than `step_px`; false when there is nothing to align with. What the last
+  // Iterates until no corner is likely to be further off than `step_px`; false when there is nothing to align with. What the last
   // pass saw is what the alignment is judged by: the step after it is too small to matter.
   bool descend(const PyramidLevel& picture, int level, Interpolation interpolation, MotionModel model, int iterations,
                double step_px, Alignment& a) {
-    const Patch& patch = patches_[static_cast<std::size_t>(level)];
-    const double usable = usable_[static_cast<std::size_t>(level)];
+    const auto l = static_cast<std::size_t>(level);
+    const Patch& patch = patches_[l];
+    const simd::EsmTemplate& reference = references_[l];
     a.converged = false;
     BentPoints bent;
-    if (a.bend.cols() > 0 && !grids_.empty()) bent = grids_[static_cast<std::size_t>(level)].bend(a.bend);
+    if (a.bend.cols() > 0 && !grids_.empty()) bent = grids_[l].bend(a.bend);
     // few parameters cannot run away with what hides the region, and may look further
     const bool wide = interpolation == Interpolation::LINEAR && wide_;
-    for (int i = 0; i < iterations; ++i, ++a.iterations) {
-      warp(picture, camera_, a.G_plane_patch, patch, interpolation, buffers_.grey.data(), buffers_.inside.data(), bent);
-      const AlignmentPass pass =
-          esm_pass(patch, {a.gain, a.bias, bent.gain_offset}, buffers_, wide ? kNotThere : kTukey);
-      if (pass.points < kSmallestShare * usable) return false;
+    for (int i = 0; i < iterations; ++i) {
+      ++a.iterations;
+      warp(picture, camera_, a.G_plane_patch, patch, interpolation, buffers_.grey.data(), nullptr, bent);
+      const Light light{a.gain, a.bias, bent.gain_offset};
+      // Near the end the matrix of the pass before is as good: it only says how far to step, not where to end.
+      const bool same_matrix = matrix_level_ == level && last_step_px_ < kNewMatrix_px;
+      esm_pass(reference, light, buffers_, pass_, !same_matrix, wide ? kNotThere : kTukey);
+      if (pass_.points < kSmallestShare * reference.usable) return false;
+      if (!same_matrix) {
+        matrix_level_ = level;
+        matrix_weight_ = pass_.weight;
+      }
       Vector10d step;
-      if (!solve(pass, level, static_cast<int>(model), step)) return false;
+      if (!solve(pass_, level, static_cast<int>(model), step)) return false;
       moved_ += step;
       const Eigen::Matrix3d M = sl3_exp(step.head<8>());
       a.G_plane_patch = to_sl3(a.G_plane_patch * M);
@@ -118,11 +128,13 @@ class EsmAligner final : public PatchAligner {
       const double wanted_gain = a.gain + step[8];
       a.gain = std::clamp(wanted_gain, least, most);
       // what the gain may not do to the mean grey of the region, the bias has to
-      if (pass.JtJ(9, 9) > 0) a.bias += (wanted_gain - a.gain) * pass.JtJ(8, 9) / pass.JtJ(9, 9);
+      if (pass_.JtJ(9, 9) > 0) a.bias += (wanted_gain - a.gain) * pass_.JtJ(8, 9) / pass_.JtJ(9, 9);
       a.bias += step[9];
       if (!a.G_plane_patch.allFinite() || !(a.gain > 0.05 && a.gain < 20)) return false;
-      const bool last = corner_step(M) * half_side_px_ < step_px || i + 1 == iterations;
-      if (last) judge(patch, pass, usable, bent.gain_offset, a);
+      last_step_px_ = corner_step(M) * half_side_px_;
+      const double left_px = interpolation == Interpolation::CUBIC ? kLeftOfStep * last_step_px_ : last_step_px_;
+      const bool last = left_px < step_px || i + 1 == iterations;
+      if (last) judge(light, reference, a);
       if (last) break;
     }
     return true;
@@ -132,9 +144,10 @@ class EsmAligner final : public PatchAligner {
   // as loosely as it may change between two frames, weighed against the noise: where texture or light leave it open, it
   // stays instead of running away (a maximum a posteriori estimate).
   bool solve(const AlignmentPass& pass, int level, int parameters, Vector10d& step) const {
-    Matrix10d A = pass.JtJ;
     const auto l = static_cast<std::size_t>(level);
-    if (usable_[l] > 0) A.topLeftCorner<8, 8>() -= kKnownNoise * pass.weight / usable_[l] * noise_[l];
+    const double usable = references_[l].usable;
+    Matrix10d A = pass.JtJ * (pass.weight / std::max(matrix_weight_, 1e-9));
+    if (usable > 0) A.topLeftCorner<8, 8>() -= kKnownNoise * pass.weight / usable * noise_[l];
     Vector10d b = pass.Jtr;
     const double variance = std::max(1.0, pass.noise_grey * pass.noise_grey);
     for (int k = 2; k < 8; ++k) {
@@ -154,7 +167,7 @@ class EsmAligner final : public PatchAligner {
     Eigen::LDLT<Matrix10d> ldlt(A);
     if (!(ldlt.vectorD().minCoeff() > 0)) {  // less texture than noise
       A.topLeftCorner(parameters, parameters) +=
-          kKnownNoise * pass.weight / usable_[l] * noise_[l].topLeftCorner(parameters, parameters);
+          kKnownNoise * pass.weight / usable * noise_[l].topLeftCorner(parameters, parameters);
       ldlt.compute(A);
     }
     if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) return false;
@@ -171,11 +184,10 @@ class EsmAligner final : public PatchAligner {
     return largest;
   }
 
-  void judge(const Patch& patch, const AlignmentPass& pass, double usable, const float* gain_offset,
-             Alignment& a) const {
-    a.noise_grey = pass.noise_grey;
-    a.visible = usable > 0 ? pass.weight / usable : 0;
-    const Correlation c = correlation(patch, {a.gain, a.bias, gain_offset}, buffers_);
+  void judge(const Light& light, const simd::EsmTemplate& reference, Alignment& a) const {
+    a.noise_grey = pass_.noise_grey;
+    a.visible = reference.usable > 0 ? pass_.weight / reference.usable : 0;
+    const Correlation c = correlation(reference, light, buffers_, pass_);
     a.correlation = c.believed;
     a.correlation_all = c.all;
   }
@@ -183,10 +195,14 @@ class EsmAligner final : public PatchAligner {
   EsmOptions options_;
   Camera camera_;
   std::vector<Patch> patches_;
-  std::vector<double> usable_;
+  std::vector<simd::EsmTemplate> references_;  // of each patch
   std::vector<Matrix8d> noise_;  // gradient_noise() of each level
   std::vector<BentGrid> grids_;  // of a region that bends
   AlignmentBuffers buffers_;
+  AlignmentPass pass_;
+  int matrix_level_ = -1;       // of pass_.JtJ
+  double matrix_weight_ = 1;    // of its pass
+  double last_step_px_ = 0;     // of a corner
   Vector10d moved_ = Vector10d::Zero();  // from the start of this alignment, to first order
   double half_side_px_ = 1, start_gain_ = 1;
   bool wide_ = false;

@@ -1,6 +1,11 @@
 #include "tracking/planar/image_pyramid.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
+
+#include "tracking/planar/halve.hpp"
+#include "tracking/planar/simd/copy_marked.hpp"
 
 namespace heartservo::tracking {
 
@@ -10,6 +15,12 @@ constexpr int kHalo = 1;                     // px around glare that it brighten
 constexpr double kSmallestClearShare = 0.4;  // of a pixel of a coarse level that must be free of glare
 
 }  // namespace
+
+cv::Mat PyramidLevel::floats() const {
+  cv::Mat result = image;
+  if (result.empty()) bytes.convertTo(result, CV_32F);
+  return result;
+}
 
 void ImagePyramid::build(const cv::Mat& grey, const cv::Rect& window, int levels, double glare_grey) {
   const int step = 1 << (levels - 1);
@@ -22,27 +33,48 @@ void ImagePyramid::build(const cv::Mat& grey, const cv::Rect& window, int levels
   w.width = std::min((right - w.x + step - 1) / step * step, grey.cols - w.x);
   w.height = std::min((bottom - w.y + step - 1) / step * step, grey.rows - w.y);
 
-  levels_.resize(std::max(levels_.size(), static_cast<std::size_t>(levels)));
+  const auto count = static_cast<std::size_t>(levels);
+  if (levels_.size() < count) levels_.resize(count), storage_.resize(count);
   count_ = levels;
-  grey(w).convertTo(levels_[0].image, CV_32F);
-  for (int i = 0; i < levels; ++i) {
-    PyramidLevel& level = levels_[static_cast<std::size_t>(i)];
+  cv::Size size = w.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    PyramidLevel& level = levels_[i];
     level.scale = 1.0F / static_cast<float>(1 << i);
     level.u0 = static_cast<float>(w.x) * level.scale;
     level.v0 = static_cast<float>(w.y) * level.scale;
+    if (i == 0) continue;
+    size = {(size.width + 1) / 2, (size.height + 1) / 2};
+    std::vector<float>& storage = storage_[i];
+    storage.resize(std::max(storage.size(), static_cast<std::size_t>(size.area())));
+    level.image = cv::Mat(size, CV_32FC1, storage.data());
   }
-  if (!halve_around_glare(grey(w), glare_grey))
-    for (std::size_t i = 1; i < static_cast<std::size_t>(levels); ++i)
-      cv::pyrDown(levels_[i - 1].image, levels_[i].image);
+  const bool glare = copy_window(grey(w), glare_grey);
+  if (levels == 1) return;
+  if (glare) return halve_around_glare(grey(w), glare_grey);
+  for (std::size_t i = 1; i < count; ++i)
+    halve(i == 1 ? levels_[0].bytes : levels_[i - 1].image, levels_[i].image, scratch_);
 }
 
-bool ImagePyramid::halve_around_glare(const cv::Mat& grey, double glare_grey) {
-  cv::compare(grey, cv::Scalar(glare_grey), glare_, cv::CMP_GE);
-  if (cv::countNonZero(glare_) == 0) return false;
-  levels_[0].image.setTo(255, glare_);
+// Glare becomes 255. Returns whether there is any.
+bool ImagePyramid::copy_window(const cv::Mat& window, double glare_grey) {
+  constexpr int kBeyond = 8;
+  const int stride = window.cols + 2 * kBeyond;
+  const std::size_t size = static_cast<std::size_t>(stride) * static_cast<std::size_t>(window.rows + 2);
+  if (bytes_.size() < size) bytes_.resize(size);
+  levels_[0].bytes = cv::Mat(window.rows, window.cols, CV_8UC1, bytes_.data() + stride + kBeyond, stride);
+  const int glare = static_cast<int>(std::ceil(std::clamp(glare_grey, 0.0, 256.0)));
+  bool any = false;
+  for (int row = 0; row < window.rows; ++row)
+    any |= simd::copy_marked(window.ptr(row), static_cast<std::size_t>(window.cols), glare, levels_[0].bytes.ptr(row));
+  return any;
+}
+
+void ImagePyramid::halve_around_glare(const cv::Mat& window, double glare_grey) {
+  cv::compare(window, cv::Scalar(glare_grey), glare_, cv::CMP_GE);
   cv::dilate(glare_, glare_, cv::Mat(), cv::Point(-1, -1), kHalo);
   glare_.convertTo(clear_[0], CV_32F, -1.0 / 255, 1);
-  cv::multiply(levels_[0].image, clear_[0], clear_grey_[0]);
+  levels_[0].bytes.convertTo(clear_grey_[0], CV_32F);
+  cv::multiply(clear_grey_[0], clear_[0], clear_grey_[0]);
   for (std::size_t i = 1; i < static_cast<std::size_t>(count_); ++i) {
     const std::size_t from = (i + 1) % 2, to = i % 2;  // two buffers in turn: pyrDown must not work in place
     cv::pyrDown(clear_[from], clear_[to]);
@@ -52,7 +84,6 @@ bool ImagePyramid::halve_around_glare(const cv::Mat& grey, double glare_grey) {
     cv::compare(clear_[to], cv::Scalar(kSmallestClearShare), glare_, cv::CMP_LT);
     levels_[i].image.setTo(255, glare_);
   }
-  return true;
 }
 
 }  // namespace heartservo::tracking

@@ -1,25 +1,36 @@
 #pragma once
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
 namespace heartservo::tracking {
 
-/// One level: `image` (CV_32FC1) shows the picture's window whose first pixel is (u0, v0) of the *full* picture at this
-/// level's scale; pixel (u, v) of the full picture is at (u / 2^level, v / 2^level).
+/// One level: shows the picture's window whose first pixel is (u0, v0) of the *full* picture at this level's scale; pixel
+/// (u, v) of the full picture is at (u / 2^level, v / 2^level).
 struct PyramidLevel {
-  cv::Mat image;
+  cv::Mat image;  ///< CV_32FC1, of level 1 and up
+  cv::Mat bytes;  ///< CV_8UC1, of level 0; readable one row and four pixels beyond its borders
   float u0 = 0, v0 = 0;
   float scale = 1;  ///< 2^-level
+
+  int cols() const { return bytes.empty() ? image.cols : bytes.cols; }
+  int rows() const { return bytes.empty() ? image.rows : bytes.rows; }
+  /// CV_32FC1, a copy on level 0.
+  cv::Mat floats() const;
 };
 
 /// Grey values from this on are glare or clipping and say nothing about the tissue.
 inline constexpr float kSaturatedGrey = 240;
 
-/// Grey picture in float, halved again and again (Gaussian, cv::pyrDown), only inside a window of it. Glare is not
+/// Grey picture, in float halved again and again (Gaussian, halve.hpp), only inside a window of it. Glare is not
 /// smeared into the coarse levels: their pixels are means over what is clear (normalised convolution, Knutsson &
 /// Westin, CVPR 1993), and 255 where little is.
 class ImagePyramid {
  public:
+  ImagePyramid() = default;
+  ImagePyramid(ImagePyramid&&) = default;  // no copies: levels point into their storage
+  ImagePyramid& operator=(ImagePyramid&&) = default;
+
   /// `window` is clipped to the picture and widened to multiples of 2^(levels-1). Memory is kept between calls.
   void build(const cv::Mat& grey, const cv::Rect& window, int levels, double glare_grey = kSaturatedGrey);
 
@@ -27,10 +38,13 @@ class ImagePyramid {
   const PyramidLevel& level(int i) const { return levels_[static_cast<std::size_t>(i)]; }
 
  private:
-  /// Makes levels 1 and up; false, and nothing done, where there is no glare in the window.
-  bool halve_around_glare(const cv::Mat& grey, double glare_grey);
+  bool copy_window(const cv::Mat& window, double glare_grey);
+  void halve_around_glare(const cv::Mat& window, double glare_grey);
 
   std::vector<PyramidLevel> levels_;
+  std::vector<std::uint8_t> bytes_;           // of level 0
+  std::vector<std::vector<float>> storage_;   // of each level's image: grows, never shrinks
+  std::vector<float> scratch_;
   cv::Mat glare_, share_, clear_[2], clear_grey_[2];
   int count_ = 0;
 };

@@ -12,10 +12,10 @@ namespace {
 // Bilinear grey value; NaN outside the window of the picture.
 double grey_at(const PyramidLevel& picture, const Eigen::Vector2d& at) {
   const Eigen::Vector2d p = at - Eigen::Vector2d(picture.u0, picture.v0);
-  if (!(p.x() >= 0 && p.y() >= 0 && p.x() < picture.image.cols - 1 && p.y() < picture.image.rows - 1)) return NAN;
+  if (!(p.x() >= 0 && p.y() >= 0 && p.x() < picture.bytes.cols - 1 && p.y() < picture.bytes.rows - 1)) return NAN;
   const int u = static_cast<int>(p.x()), v = static_cast<int>(p.y());
   const double a = p.x() - u, b = p.y() - v;
-  const auto grey = [&](int du, int dv) { return static_cast<double>(picture.image.at<float>(v + dv, u + du)); };
+  const auto grey = [&](int du, int dv) { return static_cast<double>(picture.bytes.at<std::uint8_t>(v + dv, u + du)); };
   return (1 - b) * ((1 - a) * grey(0, 0) + a * grey(1, 0)) + b * ((1 - a) * grey(0, 1) + a * grey(1, 1));
 }
 

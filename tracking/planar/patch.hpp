@@ -39,7 +39,8 @@ struct BentPoints {
 };
 
 /// Samples the pyramid's level where `G_plane_patch` sends the grid, or the bent points where they are given. `inside`
-/// is 1 where the sample lies in the window, else 0. Both have patch.size() elements.
+/// is 1 where the sample lies in the window, else 0. Both have patch.size() elements. Without `inside`, `grey` is brighter
+/// than any glare there.
 void warp(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, const Patch& patch,
           Interpolation interpolation, float* grey, float* inside, const BentPoints& bent = {});
 
@@ -51,5 +52,8 @@ void quieten_gradient(Patch& patch);
 /// A patch of width x height points at the given level, grey values from the picture under G_plane_patch.
 Patch make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,
                  int height);
+/// The same into a patch that may have memory already; `scratch` likewise.
+void make_patch(const PyramidLevel& level, const Camera& camera, const Eigen::Matrix3d& G_plane_patch, int width,
+                int height, Patch& patch, std::vector<float>& scratch);
 
 }  // namespace heartservo::tracking

@@ -29,6 +29,7 @@ constexpr double kLargestScale = 2.5;       // of the side, against the referenc
 constexpr double kLikelyPerspective = 1.4;  // a 10 mm region 45 mm away, tilted by 60 degrees, has 1.21
 constexpr double kLikelyAnisotropy = 2;     // tilted by 60 degrees
 
+constexpr std::size_t kStartsWhileLost = 4;  // alignments from places found by correlation, in one frame
 constexpr std::array<double, 4> kSearchTurns_rad{-0.26, 0.26, -0.52, 0.52};
 constexpr double kSearchScale = 1.15;
 
@@ -106,6 +107,7 @@ std::string PlanarTracker::start(const Frame& frame, const Quad& corners) {
   plane_velocity_.setZero();
   surprise_px_ = INFINITY;
   usual_quality_ = 1;
+  lost_frames_ = 0;
   started_ = locked_ = true;
   return "";
 }
@@ -215,7 +217,7 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
   }
   if (best.quality < wanted) {
     build_pyramid(frame.grey, last, last, options_.search_px + 0.35 * side_px_, options_.levels);
-    keep(search(last, options_.search_px, 3, false));
+    keep(search(last, {options_.search_px, 3, 6, 0}));
   }
   surprise_px_ =
       best.quality > 0 ? (centre(corners_of(best.alignment.G_plane_patch)) - centre(expected)).norm() : INFINITY;
@@ -225,12 +227,17 @@ PlanarTracker::Candidate PlanarTracker::follow(const Frame& frame) {
 PlanarTracker::Candidate PlanarTracker::reacquire(const cv::Mat& grey) {
   pyramid_.build(grey, cv::Rect(0, 0, grey.cols, grey.rows), options_.levels, glare_grey());
   aligner_->forget();
-  return search(corners_of(last_.G_plane_patch), std::hypot(grey.cols, grey.rows), 6, true);
+  // A frame has time for a part of the search: upright in every one, nearer and further (by as much as a heart moves in
+  // half a beat) and turned one way after the other; the most alike places in every one, the others in turn.
+  const auto n = static_cast<std::size_t>(lost_frames_++);
+  return search(corners_of(last_.G_plane_patch),
+                {std::hypot(grey.cols, grey.rows), 6, kStartsWhileLost, kSearchTurns_rad[n % 4], n,
+                 n % 2 == 0 ? kSearchScale : 1 / kSearchScale});
 }
 
 // Correlates the template, as the last believed alignment and the reference show it, with a coarse level of the pyramid
 // and aligns from the best places. After a loss it may have turned or come nearer meanwhile.
-PlanarTracker::Candidate PlanarTracker::search(const Quad& around, double radius_px, int candidates, bool turned) {
+PlanarTracker::Candidate PlanarTracker::search(const Quad& around, const SearchExtent& extent) {
   const int level = search_level(side_px_, pyramid_.levels());
   struct Start {
     Alignment alignment;
@@ -240,8 +247,8 @@ PlanarTracker::Candidate PlanarTracker::search(const Quad& around, double radius
   std::vector<Start> starts;
   const auto look_for = [&](const Alignment& view) {
     const Quad corners = corners_of(view.G_plane_patch);
-    const auto places =
-        find_template(aligner_->patch(level), corners, pyramid_.level(level), centre(around), radius_px, candidates);
+    const auto places = find_template(aligner_->patch(level), corners, pyramid_.level(level), centre(around),
+                                      extent.radius_px, extent.places);
     for (const auto& place : places) {
       const Eigen::Vector2d from = camera_.normalise(centre(corners)), to = camera_.normalise(place.centre);
       if (!from.allFinite() || !to.allFinite()) continue;
@@ -254,20 +261,23 @@ PlanarTracker::Candidate PlanarTracker::search(const Quad& around, double radius
   };
   look_for(last_);
   look_for(reference_);
-  for (int i = 0; turned && i < 2; ++i) {  // nearer or further, by as much as a heart moves in half a beat
+  if (extent.scale != 1) {
     Alignment view = last_;
-    const double scale = i == 0 ? kSearchScale : 1 / kSearchScale;
-    view.G_plane_patch *= Eigen::Vector3d(scale, scale, 1).asDiagonal();
+    view.G_plane_patch *= Eigen::Vector3d(extent.scale, extent.scale, 1).asDiagonal();
     look_for(view);
   }
-  for (int i = 0; turned && i < 4; ++i) {
+  if (extent.turn_rad != 0) {
     Alignment view = reference_;
-    view.G_plane_patch *= rotation(kSearchTurns_rad[static_cast<std::size_t>(i)]);
+    view.G_plane_patch *= rotation(extent.turn_rad);
     look_for(view);
   }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Start& a, const Start& b) { return a.correlation > b.correlation; });
-  if (starts.size() > 2 * static_cast<std::size_t>(candidates)) starts.resize(2 * static_cast<std::size_t>(candidates));
+  if (starts.size() > extent.starts) {
+    const std::size_t last = extent.starts - 1;
+    std::swap(starts[last], starts[last + extent.turn % (starts.size() - last)]);
+    starts.resize(extent.starts);
+  }
   Candidate best;
   for (const Start& start : starts)
     if (const Candidate c = try_from(start.alignment, level, start.expected); c.quality > best.quality) {
@@ -307,6 +317,7 @@ void PlanarTracker::believe(const Candidate& candidate, double time_s) {
   last_ = candidate.alignment;
   aligner_->believe(last_);
   last_time_s_ = time_s;
+  lost_frames_ = 0;
   locked_ = true;
 }
 
@@ -320,14 +331,11 @@ Track PlanarTracker::track(const Frame& frame) {
   if (readable) {
     aligner_->see(frame.grey);
     const bool was_locked = locked_;
-    Candidate found;
-    if (locked_) found = follow(frame);
-    if (!(found.quality >= options_.uncertain_quality)) {
-      found = reacquire(frame.grey);
-      if (!(found.quality >= found_again_quality())) {
-        found.quality = 0;
-        locked_ = false;
-      }
+    // What is not near its place is looked for in the whole picture from the next frame on: this one's time is spent.
+    Candidate found = locked_ ? follow(frame) : reacquire(frame.grey);
+    if (!(found.quality >= (locked_ ? options_.uncertain_quality : found_again_quality()))) {
+      found.quality = 0;
+      locked_ = false;
     }
     if (found.quality >= options_.uncertain_quality) {
       track.reacquired = !was_locked;
@@ -345,7 +353,8 @@ Track PlanarTracker::track(const Frame& frame) {
   track.target = pixel_of(last_.G_plane_patch, aligner_->bent(last_, Eigen::Vector2d::Zero()));
   for (int i = 0; i < kGridSide * kGridSide; ++i) {
     const auto along = [](int k) { return (2 * k + 1.0) / kGridSide - 1; };
-    const Eigen::Vector2d point(along(i % kGridSide) * patch_corners_[2].x(), along(i / kGridSide) * patch_corners_[2].y());
+    const Eigen::Vector2d point(along(i % kGridSide) * patch_corners_[2].x(),
+                                along(i / kGridSide) * patch_corners_[2].y());
     track.points[static_cast<std::size_t>(i)] = pixel_of(last_.G_plane_patch, aligner_->bent(last_, point));
   }
   track.gain = last_.gain;

@@ -55,6 +55,15 @@ class PlanarTracker final : public TargetTracker {
     double quality = 0;
   };
 
+  struct SearchExtent {
+    double radius_px;
+    int places;            // of each view, best first
+    std::size_t starts;    // of all views together, tried by aligning
+    double turn_rad;       // of a further view; 0: none
+    std::size_t turn = 0;  // counts calls: the last start is another one of the rest each time
+    double scale = 1;      ///< another size of the last view to look for; 1: none
+  };
+
   double glare_grey() const;
   std::string unfit_texture() const;
   Eigen::Vector2d pixel_of(const Eigen::Matrix3d& G_plane_patch, const Eigen::Vector2d& patch_point) const;
@@ -64,7 +73,7 @@ class PlanarTracker final : public TargetTracker {
   Candidate try_from(const Alignment& start, int coarsest, const Quad& expected);
   double found_again_quality() const;
   Candidate follow(const Frame& frame);
-  Candidate search(const Quad& around, double radius_px, int candidates, bool turned);
+  Candidate search(const Quad& around, const SearchExtent& extent);
   Candidate reacquire(const cv::Mat& grey);
   void build_pyramid(const cv::Mat& grey, const Quad& a, const Quad& b, double margin_px, int levels);
   void believe(const Candidate& candidate, double time_s);
@@ -82,6 +91,7 @@ class PlanarTracker final : public TargetTracker {
   double brightest_ = 255;                                    // of the template, grey
   double surprise_px_ = 0;    // how far the last frame's place was from the foreseen one
   double usual_quality_ = 1;  // of the last frames
+  int lost_frames_ = 0;       // searched in vain since the last believed place
   bool started_ = false, locked_ = false;
   int width_ = 0, height_ = 0;
   double side_px_ = 0;

@@ -1,5 +1,6 @@
 #include "tracking/planar/search_picture.hpp"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "tracking/planar/patch.hpp"
@@ -9,9 +10,13 @@ namespace heartservo::tracking {
 void SearchPicture::build(const cv::Mat& grey, const cv::Rect& window, int levels) {
   pyramid_.build(grey, window, levels);
   const PyramidLevel& finest = pyramid_.level(0);
-  double brightest = 0;
-  cv::minMaxIdx(finest.image, nullptr, &brightest);
-  has_glare_ = brightest >= static_cast<double>(kSaturatedGrey);
+  has_glare_ = false;
+  for (int v = 0; v < finest.rows() && !has_glare_; ++v) {
+    const std::uint8_t* row = finest.bytes.ptr(v);
+    std::uint8_t brightest = 0;
+    for (int u = 0; u < finest.cols(); ++u) brightest = std::max(brightest, row[u]);
+    has_glare_ = static_cast<float>(brightest) >= kSaturatedGrey;
+  }
   if (!has_glare_) return;
   glare_.resize(static_cast<std::size_t>(levels));
   const auto dilate = [this](const cv::Mat& from, int side) {
@@ -19,12 +24,12 @@ void SearchPicture::build(const cv::Mat& grey, const cv::Rect& window, int level
   };
   for (int l = 0; l < levels; ++l) {
     PyramidLevel& level = glare_[static_cast<std::size_t>(l)];
-    level = {level.image, pyramid_.level(l).u0, pyramid_.level(l).v0, pyramid_.level(l).scale};
-    level.image.create(pyramid_.level(l).image.size(), CV_32FC1);
+    level.u0 = pyramid_.level(l).u0, level.v0 = pyramid_.level(l).v0, level.scale = pyramid_.level(l).scale;
+    level.image.create(pyramid_.level(l).rows(), pyramid_.level(l).cols(), CV_32FC1);
     if (l == 0) {
-      for (int v = 0; v < finest.image.rows; ++v)
-        for (int u = 0; u < finest.image.cols; ++u)
-          level.image.at<float>(v, u) = finest.image.at<float>(v, u) >= kSaturatedGrey ? 1.0F : 0.0F;
+      for (int v = 0; v < finest.rows(); ++v)
+        for (int u = 0; u < finest.cols(); ++u)
+          level.image.at<float>(v, u) = static_cast<float>(finest.bytes.at<std::uint8_t>(v, u)) >= kSaturatedGrey;
       dilate(level.image, 3);
       spread_.copyTo(level.image);
     } else {  // cv::pyrDown mixes 5 x 5 pixels

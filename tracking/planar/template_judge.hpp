@@ -19,7 +19,7 @@ class TemplateJudge {
   /// At `level` or the coarsest one there is.
   const Patch& patch(int level) const;
   /// Number of usable points of a level.
-  double usable(int level) const { return usable_[static_cast<std::size_t>(level)]; }
+  double usable(int level) const { return references_[static_cast<std::size_t>(level)].usable; }
   const Camera& camera() const { return camera_; }
   /// Half the longer side of the region: px of the picture per unit of patch coordinate where it was learnt.
   double half_side_px() const { return half_side_px_; }
@@ -32,11 +32,11 @@ class TemplateJudge {
   double correlation_at(const ImagePyramid& picture, const Eigen::Matrix3d& G_plane_patch);
 
  private:
-  double sample(const ImagePyramid& picture, const Eigen::Matrix3d& G_plane_patch);
+  void sample(const ImagePyramid& picture, const Eigen::Matrix3d& G_plane_patch);
 
   Camera camera_;
   std::vector<Patch> patches_;
-  std::vector<double> usable_;
+  std::vector<simd::EsmTemplate> references_;  // of each patch
   AlignmentBuffers buffers_;
   double half_side_px_ = 1;
 };

@@ -62,9 +62,9 @@ std::vector<FoundPlace> find_template(const Patch& patch, const Quad& corners, c
   std::vector<FoundPlace> places;
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();
   const cv::Mat drawn = is_convex(corners) ? draw_template(patch, corners, picture.scale, offset) : cv::Mat();
-  if (drawn.empty() || drawn.cols > picture.image.cols || drawn.rows > picture.image.rows) return places;
+  if (drawn.empty() || drawn.cols > picture.cols() || drawn.rows > picture.rows()) return places;
   cv::Mat score;
-  cv::matchTemplate(without_glare(picture.image), drawn, score, cv::TM_CCOEFF_NORMED);
+  cv::matchTemplate(without_glare(picture.floats()), drawn, score, cv::TM_CCOEFF_NORMED);
   const Eigen::Vector2d origin(picture.u0, picture.v0);
   const double s = static_cast<double>(picture.scale);
   for (int row = 0; row < score.rows; ++row)

@@ -148,9 +148,9 @@ TEST(BendEquations, AreThoseOfTheResidual) {
   AlignmentBuffers buffers;
   buffers.resize(patch.size());
   const BentPoints bent = grid.bend(BendField::Zero(3, points));
-  warp(pyramid.level(0), pixels(), G, patch, Interpolation::CUBIC, buffers.grey.data(), buffers.inside.data(), bent);
+  warp(pyramid.level(0), pixels(), G, patch, Interpolation::CUBIC, buffers.grey.data(), nullptr, bent);
   AlignmentPass pass;
-  weigh_points(patch, {1, 0, bent.gain_offset}, buffers, pass);
+  weigh_points(simd::EsmTemplate(patch), {1, 0, bent.gain_offset}, buffers, pass);
   BendEquations equations;
   equations.resize(points);
   equations.JtJ.setZero();

@@ -150,8 +150,9 @@ TEST(EsmAligner, NormalEquationsAgreeWithCentralDifferencesAtTheOptimum) {
     return r;
   };
   const Eigen::MatrixXd J = test::numeric_jacobian(residual, Eigen::VectorXd::Zero(10), 1e-5);
-  warp(pyramid.level(0), pixels(), G, patch, Interpolation::CUBIC, buffers.grey.data(), buffers.inside.data());
-  const AlignmentPass pass = esm_pass(patch, {}, buffers);
+  warp(pyramid.level(0), pixels(), G, patch, Interpolation::CUBIC, buffers.grey.data(), nullptr);
+  AlignmentPass pass;
+  esm_pass(simd::EsmTemplate(patch), {}, buffers, pass);
   const Eigen::MatrixXd JtJ = J.transpose() * J;
   // a gradient over two pixels is up to 2.3 % (sin w / w at the shortest wavelength) below the derivative
   for (int i = 0; i < 10; ++i)
