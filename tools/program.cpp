@@ -78,7 +78,7 @@ int run_program(const std::vector<std::string>& arguments) {
       add_scene_command(program),  add_texture_command(program),   add_calibrate_command(program),
       add_camera_command(program), add_predict_command(program),   add_analyse_command(program),
       add_beats_command(program),  add_stabilise_command(program), add_paper_command(program),
-      add_report_command(program), add_doctor_command(program),   add_sweep_command(program),
+      add_report_command(program), add_doctor_command(program),    add_sweep_command(program),
       add_capture_command(program)};
   try {
     program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes the last one first

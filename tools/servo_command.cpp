@@ -82,9 +82,9 @@ ServoRequest configure(const ServoOptions& o) {
   request.label = "servo " + stem_of(o.run.source);
   request.settle_s = o.settle_s;
   request.quiet = o.run.quiet;
+  request.igtl_port = o.igtl_port;
   request.real_time = o.real_time;
   request.show = o.show;
-  request.igtl_port = o.igtl_port;
   if (o.run.frames && !scene.is_recorded()) fit_settling(request, scene.frame_count(), scene.camera.frame_rate_hz);
   return request;
 }
@@ -186,12 +186,12 @@ Command add_servo_command(CLI::App& program) {
                   "residual and margins against a sine target of frequencies from LOW to HIGH, in Hz")
       ->type_name("LOW:HIGH");
   app->add_option("--settle-s", o.settle_s, "frames before this are not scored")->check(finite(0, 1e4));
-  app->add_flag("--show", o.show, "the picture in a window while it runs (X11)");
-  app->add_flag("--real-time", o.real_time,
-                "on a camera: real-time scheduling where allowed, memory locked, no pictures and no progress");
   app->add_option("--igtl", o.igtl_port, "send target, tip and picture to OpenIGTLink clients on this port (18944)")
       ->check(CLI::Range(1, 65535))
       ->type_name("PORT");
+  app->add_flag("--show", o.show, "the picture in a window while it runs (X11)");
+  app->add_flag("--real-time", o.real_time,
+                "on a camera: real-time scheduling where allowed, memory locked, no pictures and no progress");
   app->add_flag("--no-video", o.no_video, "no short film of the run in the report");
   app->add_flag("--list", o.run.list, "list the engines and exit");
   app->footer(

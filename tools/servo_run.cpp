@@ -61,14 +61,6 @@ ReportPicture overlay(const servo::LoopRecord& r, const servo::TruthSample& trut
   return picture;
 }
 
-// The picture has the tool in it already.
-void show(Window& window, const servo::LoopRecord& record) {
-  if (record.frame.grey.empty()) return;
-  std::vector<Window::Outline> outlines;
-  for (const auto* track : {&record.track, &record.marker_track}) add_outline(*track, outlines);
-  window.show(record.frame.grey, outlines);
-}
-
 void publish(IgtlStream& stream, const servo::LoopRecord& r) {
   IgtlSnapshot snapshot;
   snapshot.time_s = r.frame.time_s;
@@ -77,6 +69,14 @@ void publish(IgtlStream& stream, const servo::LoopRecord& r) {
   snapshot.T_camera_tip.translation() = r.tip;
   snapshot.grey = r.frame.grey;
   stream.publish(snapshot);
+}
+
+// The picture has the tool in it already.
+void show(Window& window, const servo::LoopRecord& record) {
+  if (record.frame.grey.empty()) return;
+  std::vector<Window::Outline> outlines;
+  for (const auto* track : {&record.track, &record.marker_track}) add_outline(*track, outlines);
+  window.show(record.frame.grey, outlines);
 }
 
 }  // namespace
@@ -120,10 +120,10 @@ ServoOutcome run_loop(ServoRequest request) {
   score.reserve(rows_ahead(expected));
   Album album(expected, [](double px) { return fmt::format("{:.1f} px from the goal", px); });
   std::optional<ShortVideo> video;
-  std::optional<Window> window;
-  if (request.show) window.emplace("heartservo: " + request.source, table->frames().size());
   std::optional<IgtlStream> igtl;
   if (request.igtl_port > 0) igtl.emplace(request.igtl_port);
+  std::optional<Window> window;
+  if (request.show) window.emplace("heartservo: " + request.source, table->frames().size());
   ServoRunFacts facts;
   double looped_s = 0;  // in the loop itself: not what is made for people to look at
   {

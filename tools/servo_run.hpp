@@ -18,9 +18,9 @@ struct ServoRequest {
   std::string label;     ///< of the progress bar
   double settle_s = -1;  ///< asked for on the command line; below 0: the scene's
   bool quiet = false;
+  int igtl_port = 0;       ///< poses and pictures go out on this port, see igtl_stream.hpp; 0: they do not
   bool show = false;       ///< the picture in a window while it runs
   bool real_time = false;  ///< see real_time.hpp; the pictures of the report are left out
-  int igtl_port = 0;  ///< poses and pictures go out on this port, see igtl_stream.hpp; 0: they do not
   /// Called when nothing stands against the run any more. Returns where a short film of it goes; empty: none is made.
   std::function<std::filesystem::path()> before_run;
 };
@@ -30,7 +30,7 @@ struct ServoOutcome {
   TimeTable frames{{"time_s"}};
   std::vector<ReportPicture> pictures;
   ReportVideo video;  ///< no file when none was made
-  sim::Scene scene;  ///< as it was run
+  sim::Scene scene;   ///< as it was run
   std::string stop_reason;
   std::string device_failure;  ///< the camera did not come back
   bool interrupted = false;

@@ -10,7 +10,7 @@ TEST_F(Usage, EveryCommandHasHelpWithAnExample) {
   const Outcome program = run({"--help"});
   EXPECT_EQ(program.code, 0);
   EXPECT_NE(program.out.find("Example: heartservo "), std::string::npos) << program.out;
-  for (const std::string command : {"servo", "track", "render", "scene", "calibrate", "camera", "stabilise"}) {
+  for (const std::string command : {"servo", "track", "render", "scene", "calibrate", "camera", "stabilise", "capture"}) {
     EXPECT_NE(program.out.find("\n  " + command + " "), std::string::npos) << command << " is not in\n" << program.out;
     const Outcome o = run({command, "--help"});
     EXPECT_EQ(o.code, 0);
