@@ -106,7 +106,7 @@ TEST(IgtlStream, AClientGetsPosesInMillimetresAndPictures) {
   });
   std::atomic<bool> done = false;
   std::thread waiter([&] { client.join(), done = true; });
-  publish_until(stream, [&] { return done; });
+  publish_until(stream, [&] { return done.load(); });
   waiter.join();
   ASSERT_EQ(target.name, "target");
   ASSERT_EQ(tip.name, "tip");
