@@ -22,16 +22,18 @@ send() {
 }
 
 send rec.partial/frames.csv &
+sender=$!
 sleep 2
 check "recording" 120 "$HEARTSERVO" capture $source --frames $((count + 60)) --quiet --out rec
-wait
+wait $sender
 check "bit for bit" 60 "$CHECK" frames rec $MADE/frames.raw 640 480 $((count * 8 / 10))
 says "nothing was dropped by us" rec/summary.json '"queue_dropped": 0' '"dropped": 0'
 check "tracked from the recording" 150 "$HEARTSERVO" track rec --roi "$(cat $MADE/roi)" --quiet --out from_files
 
 send live.partial &
+sender=$!
 sleep 2
 check "tracked live" 150 "$HEARTSERVO" track v4l2:$source --roi "$(cat $MADE/roi)" --frames $((count + 30)) --quiet --out live
-wait
+wait $sender
 says "the age of frames is known" live/frames.csv "frame/age_s"
 check "the same track" 120 "$CHECK" track live/frames.csv from_files/frames.csv
