@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/files.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/sweep/sweep_statistics.hpp"
 #include "tools/sweep/sweep_store.hpp"
