@@ -11,6 +11,7 @@
 #include "sim/table/stages.hpp"
 #include "sim/table/table.hpp"
 #include "sim/tissue/feeling_robot.hpp"
+#include "tracking/planar/quad.hpp"
 
 namespace heartservo::sim {
 
@@ -18,7 +19,16 @@ namespace {
 
 // Each consumer of randomness has its own stream of the scene's seed.
 enum class Stream : std::uint64_t {
-  MOTION = 1, SURFACE, PICTURE, ROBOT, HAND, RIGHT_PICTURE, ECG, FORCE, SWAB, RIGHT_SWAB
+  MOTION = 1,
+  SURFACE,
+  PICTURE,
+  ROBOT,
+  HAND,
+  RIGHT_PICTURE,
+  ECG,
+  FORCE,
+  SWAB,
+  RIGHT_SWAB
 };
 std::uint64_t stream_seed(int seed, Stream stream) {
   return static_cast<std::uint64_t>(seed) * 1000003ULL + static_cast<std::uint64_t>(stream);
@@ -30,21 +40,20 @@ class OperatingTable final : public Table, private tracking::FrameSource {
       : scene_(scene),
         path_(surgeon_path(scene)),
         camera_(camera_of(scene, 0, 0)),
-        endoscope_(
-            camera_,
-            HeartSurface(scene.surface,
-                         heart_motion(scene, stream_seed(scene.seed, Stream::MOTION)),
-                         stream_seed(scene.seed, Stream::SURFACE)),
-            scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
+        endoscope_(camera_,
+                   HeartSurface(scene.surface, heart_motion(scene, stream_seed(scene.seed, Stream::MOTION)),
+                                stream_seed(scene.seed, Stream::SURFACE)),
+                   scene.picture, stream_seed(scene.seed, Stream::PICTURE), scene.tool),
         robot_(make_robot({scene.robot, goal_at(0) + scene.robot.start_error_m, tool_axis(),
                            stream_seed(scene.seed, Stream::ROBOT)})),
-        feeling_(*robot_, [this](double t) { return force_at(t); },
-                 scene.loop.force.on() ? scene.tissue.force_noise_n : 0, stream_seed(scene.seed, Stream::FORCE)) {
+        feeling_(
+            *robot_, [this](double t) { return force_at(t); }, scene.loop.force.on() ? scene.tissue.force_noise_n : 0,
+            stream_seed(scene.seed, Stream::FORCE)) {
     if (scene.loop.eye_in_hand) start_goal_ = goal_at(0);
     if (!(scene.stereo.baseline_m > 0)) return;
-    right_ = std::make_unique<Endoscope>(camera_, endoscope_.surface(), scene.picture,
-                                         stream_seed(scene.seed, Stream::RIGHT_PICTURE), scene.tool,
-                                         endoscope_.texture());
+    right_ =
+        std::make_unique<Endoscope>(camera_, endoscope_.surface(), scene.picture,
+                                    stream_seed(scene.seed, Stream::RIGHT_PICTURE), scene.tool, endoscope_.texture());
   }
 
   tracking::FrameSource& frames() override { return *this; }
@@ -153,9 +162,39 @@ class OperatingTable final : public Table, private tracking::FrameSource {
 
   Eigen::Isometry3d pose_at(const TargetOptions& target, double t) const {
     const HeartSurface& surface = endoscope_.surface();
-    return target.landmark >= 0 ? surface.T_camera_landmark(index_of(target), t)
-                                : surface.T_camera_point(target.x_m, target.y_m, t);
+    if (target.landmark >= 0) return surface.T_camera_landmark(index_of(target), t);
+    const Eigen::Vector2d& point =
+        targets_[&target == &scene_.target ? 0 : 1 + static_cast<std::size_t>(&target - scene_.more_targets.data())];
+    return surface.T_camera_point(point.x(), point.y(), t);
   }
+
+  // On a region without a landmark the target is the tissue that the first picture shows at the region's centre, which
+  // on a curved surface is not the middle of its sides. By Newton's method on the ray.
+  std::vector<Eigen::Vector2d> targets() const {
+    std::vector<Eigen::Vector2d> points;
+    for (std::size_t region = 0; region <= scene_.more_targets.size(); ++region) {
+      const TargetOptions& target = target_of(region);
+      Eigen::Vector2d& point = points.emplace_back(target.x_m, target.y_m);
+      if (target.landmark >= 0) continue;
+      const HeartSurface& surface = endoscope_.surface();
+      const auto ray = [&](double x, double y) -> Eigen::Vector2d { return surface.point(x, y, 0).hnormalized(); };
+      const double h = target.side_m / 2, x = target.x_m, y = target.y_m;
+      tracking::Quad corners;
+      const tracking::Quad sides = tracking::rectangle(-1, -1, 2, 2);
+      for (std::size_t i = 0; i < 4; ++i) corners[i] = ray(x + h * sides[i].x(), y + h * sides[i].y());
+      const Eigen::Vector2d centre = tracking::homography_between(sides, corners).col(2).hnormalized();
+      for (int i = 0; i < 10; ++i) {
+        constexpr double kStep_m = 1e-6;
+        const Eigen::Vector2d now = ray(point.x(), point.y());
+        Eigen::Matrix2d slope;
+        slope << (ray(point.x() + kStep_m, point.y()) - now) / kStep_m,
+            (ray(point.x(), point.y() + kStep_m) - now) / kStep_m;
+        point += slope.inverse() * (centre - now);
+      }
+    }
+    return points;
+  }
+
   // A person measures the distance before the start, as well as the scene says; the loop gets the number.
   template <class Pick>
   tracking::ScaleSource scale_of(const TargetOptions& target, std::mt19937_64& random, const Pick& pick) const {
@@ -214,7 +253,8 @@ class OperatingTable final : public Table, private tracking::FrameSource {
   servo::SurgeonPath path_;
   tracking::Camera camera_;
   Endoscope endoscope_;
-  std::unique_ptr<Endoscope> right_;  // null for one view
+  std::vector<Eigen::Vector2d> targets_ = targets();  // of each region, on the surface's parameters (m)
+  std::unique_ptr<Endoscope> right_;                  // null for one view
   std::unique_ptr<SimulatedRobot> robot_;
   FeelingRobot feeling_;
   Eigen::Vector3d tip_ = robot_->true_tip_camera();
