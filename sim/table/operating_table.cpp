@@ -95,6 +95,7 @@ class OperatingTable final : public Table, private tracking::FrameSource {
     picked.target = pick(region_at(target, 0));
     picked.target_edge_ratio = target.landmark >= 0 ? kFrameEdge : 0;
     picked.marker_edge_ratio = kFrameEdge;
+    picked.marker_plate = pattern_picture(kMarkerPattern);
     if (target.landmark >= 0) picked.target_plate = pattern_picture(static_cast<std::uint32_t>(target.landmark));
     const auto marker = marker_corners(scene_.tool, start_tip_);
     tracking::Quad marker_px;

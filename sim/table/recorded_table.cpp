@@ -63,6 +63,7 @@ class RecordedTable final : public Table, private tracking::FrameSource {
     else if (scene_.depth.source == "stereo" && stereo_)
       picked.scale = tracking::stereo_scale(*stereo_, scene_.stereo.matching);
     picked.marker_edge_ratio = kFrameEdge;
+    picked.marker_plate = pattern_picture(kMarkerPattern);
     for (std::size_t i = 0; i < 4; ++i) picked.marker[i] = camera_.project(corners[i]);
     return picked;
   }

@@ -9,6 +9,7 @@
 #include "sim/table/table.hpp"
 #include "tracking/frames/frame.hpp"
 #include "tracking/frames/live_source.hpp"
+#include "tracking/landmark/print_refinement.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/landmark/square_refinement.hpp"
 #include "tracking/planar/registry.hpp"
@@ -18,9 +19,11 @@ namespace heartservo::sim {
 
 namespace {
 
-auto refiner(const tracking::Camera& camera, double edge_ratio) {
-  return [camera, edge_ratio](const tracking::Frame& frame, const tracking::Quad& picked) {
-    return edge_ratio > 0 ? tracking::refine_square(frame.grey, camera, picked, edge_ratio).corners : picked;
+auto refiner(const tracking::Camera& camera, double edge_ratio, const cv::Mat& plate, double side_m) {
+  return [camera, edge_ratio, plate, side_m](const tracking::Frame& frame, const tracking::Quad& picked) {
+    if (!(edge_ratio > 0)) return picked;
+    const tracking::Quad corners = tracking::refine_square(frame.grey, camera, picked, edge_ratio).corners;
+    return tracking::refine_by_print(frame.grey, camera, corners, plate, side_m);
   };
 }
 
@@ -57,12 +60,12 @@ servo::LoopStages make_stages(const Scene& scene, Table& table) {
   tracking::EstimatorOptions estimator = estimator_options(scene, table);
   stages.target_tracker = tracking::trackers().make(scene.engines.tracker, camera, scene.tracking);
   stages.target_estimator = tracking::estimators().make(scene.engines.estimator, estimator);
-  stages.refine_target = refiner(camera, picked.target_edge_ratio);
+  stages.refine_target = refiner(camera, picked.target_edge_ratio, picked.target_plate, table.region_side_m());
   if (scene.loop.tip.use_marker) {
     estimator.side_m = table.marker_side_m();
     stages.marker_tracker = tracking::trackers().make(scene.engines.tracker, camera, scene.tracking);
     stages.marker_estimator = tracking::estimators().make("landmark_refined", estimator);
-    stages.refine_marker = refiner(camera, picked.marker_edge_ratio);
+    stages.refine_marker = refiner(camera, picked.marker_edge_ratio, picked.marker_plate, table.marker_side_m());
   }
   if (tracking::LiveSource* live = table.frames().live()) stages.frame_clock = [live] { return live->now_s(); };
   if (auto ecg = table.ecg()) stages.ecg = std::make_unique<servo::EcgMonitor>(std::move(ecg));

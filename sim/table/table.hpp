@@ -32,7 +32,8 @@ struct HandPicked {
   double target_edge_ratio = 0, marker_edge_ratio = 0;
   /// How the target's distance becomes known once, as the scene's depth.source says; empty where it does not.
   tracking::ScaleSource scale;
-  cv::Mat target_plate;  ///< what was printed on the target's plate, for `landmark_dense`; empty for bare tissue
+  /// What was printed on the plates, as landmark_template.hpp wants it; the target's is empty for bare tissue.
+  cv::Mat target_plate, marker_plate;
 };
 
 class Table {
