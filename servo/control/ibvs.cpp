@@ -1,9 +1,6 @@
 // Image-based visual servoing with a fixed endoscope (eye-to-hand), through ViSP: the features x, y and log(Z/Z*) of
 // the tool tip are driven to those of the goal (Chaumette & Hutchinson, IEEE RAM 2006; Nakamura et al., ICRA 2001).
-// ibvs uses the tip as it is seen now and assumes nothing of the robot. ibvs_feedforward sees where the robot has been
-// asked to be when the command acts, as if it stood there, against where it must be asked for (feed_forward.hpp): the
-// loop adds the velocity of the latter, so that only what was foreseen wrongly is left to the gain. It assumes that the
-// robot's stated dynamics are about right.
+// It uses the tip as it is seen now and assumes nothing of the robot.
 #include <visp3/core/vpException.h>
 #include <visp3/visual_features/vpFeatureDepth.h>
 #include <visp3/visual_features/vpFeaturePoint.h>
@@ -12,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "servo/control/feed_forward.hpp"
 #include "servo/control/registry.hpp"
 
 namespace heartservo::servo {
@@ -21,7 +17,7 @@ namespace {
 
 class Ibvs final : public ControlLaw {
  public:
-  Ibvs(double gain, bool foresees, const ToolRobotData& robot) : gain_(gain), foresees_(foresees), lag_(robot) {
+  explicit Ibvs(double gain) : gain_(gain) {
     servo_.setServo(vpServo::EYETOHAND_L_cVe_eJe);
     servo_.setInteractionMatrixType(vpServo::CURRENT);
     point_.buildFrom(0, 0, 1);
@@ -38,8 +34,7 @@ class Ibvs final : public ControlLaw {
   ~Ibvs() override { servo_.kill(); }
 
   Eigen::Vector3d velocity(const ControlState& state) override {
-    const Eigen::Vector3d tip = foresees_ ? state.robot.reference : state.tip_now;
-    const Eigen::Vector3d goal = foresees_ ? asked_goal(state, lag_, 0) : state.goal_then.position;
+    const Eigen::Vector3d &tip = state.tip_now, &goal = state.goal_then.position;
     if (!(tip.z() > 0 && goal.z() > 0) || !tip.allFinite() || !goal.allFinite())
       return Eigen::Vector3d::Constant(NAN);  // the guard refuses it
     const double x = tip.x() / tip.z(), y = tip.y() / tip.z();
@@ -56,13 +51,10 @@ class Ibvs final : public ControlLaw {
     }
   }
 
-  int horizon() const override { return foresees_ ? 2 : 0; }
-  bool wants_feed_forward() const override { return foresees_; }
+  int horizon() const override { return 0; }
 
  private:
   double gain_;
-  bool foresees_;
-  RobotLag lag_;
   vpServo servo_;
   vpFeaturePoint point_, point_goal_;
   vpFeatureDepth depth_, depth_goal_;
@@ -70,12 +62,6 @@ class Ibvs final : public ControlLaw {
 
 }  // namespace
 
-std::unique_ptr<ControlLaw> make_ibvs(const ControlSetup& setup) {
-  return std::make_unique<Ibvs>(setup.options.gain, false, setup.robot);
-}
-
-std::unique_ptr<ControlLaw> make_ibvs_feedforward(const ControlSetup& setup) {
-  return std::make_unique<Ibvs>(setup.options.gain_feedforward, true, setup.robot);
-}
+std::unique_ptr<ControlLaw> make_ibvs(const ControlSetup& setup) { return std::make_unique<Ibvs>(setup.options.gain); }
 
 }  // namespace heartservo::servo

@@ -2,6 +2,7 @@
 
 #include "servo/control/feed_forward.hpp"
 #include "servo/control/registry.hpp"
+#include "tests/support/random.hpp"
 
 namespace heartservo::servo {
 namespace {
@@ -32,6 +33,23 @@ TEST(Ibvs, EachFeatureErrorDecaysAtTheGain) {
   const double dt = 1e-6;
   const Eigen::Vector3d rate = (features(tip + v * dt) - features(tip)) / dt;
   EXPECT_LT((rate + 7 * (features(tip) - features(goal))).norm(), 1e-4);
+}
+
+// ibvs is ViSP's vpServo; ibvs_feedforward inverts the interaction matrix by hand.
+TEST(Ibvs, WithFeedForwardTheLawIsThatOfVpServo) {
+  auto random = test::seeded();
+  ControlSetup setup;
+  setup.options.gain = setup.options.gain_feedforward = 11;
+  const auto visp = control_laws().make("ibvs", setup), own = control_laws().make("ibvs_feedforward", setup);
+  for (int trial = 0; trial < 50; ++trial) {
+    const auto somewhere = [&] {
+      return Eigen::Vector3d(test::normal(random, 0.01), test::normal(random, 0.01),
+                             0.055 + test::normal(random, 0.005));
+    };
+    const ControlState state = state_of(somewhere(), somewhere(), Eigen::Vector3d::Zero());
+    const Eigen::Vector3d expected = visp->velocity(state);
+    EXPECT_LT((own->velocity(state) - expected).norm(), 1e-9 * (1 + expected.norm()));
+  }
 }
 
 TEST(Ibvs, ReachesAStillGoal) {

@@ -139,7 +139,9 @@ void RegionDepthEstimator::report(const Track& track, const SurfacePose& pose, c
   state.T_camera_target.translation() = scale_.depth_m * z * ray;
   state.T_camera_target.linear() = pose.rotation;
   // d z / d parameters, once the own way has been taken from what they leave
-  Vector11 trend = -(J_.transpose() * kriging);
+  Vector11 trend;
+  trend.noalias() = J_.transpose() * kriging;  // straight into it: the product's size is only known at run time
+  trend = -trend;
   trend[2] += 1;
   const double variance =
       prior_.centre_variance - prior_.with_centre.dot(kriging) + trend.dot(covariance * trend);

@@ -2,19 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "tracking/planar/halve.hpp"
 #include "tracking/planar/simd/copy_marked.hpp"
 
 namespace heartservo::tracking {
-
-namespace {
-
-constexpr int kHalo = 1;                     // px around glare that it brightens
-constexpr double kSmallestClearShare = 0.4;  // of a pixel of a coarse level that must be free of glare
-
-}  // namespace
 
 cv::Mat PyramidLevel::floats() const {
   cv::Mat result = image;
@@ -50,9 +42,12 @@ void ImagePyramid::build(const cv::Mat& grey, const cv::Rect& window, int levels
   }
   const bool glare = copy_window(grey(w), glare_grey);
   if (levels == 1) return;
-  if (glare) return halve_around_glare(grey(w), glare_grey);
+  if (glare) clear_.start(levels_[0].bytes);
   for (std::size_t i = 1; i < count; ++i)
-    halve(i == 1 ? levels_[0].bytes : levels_[i - 1].image, levels_[i].image, scratch_);
+    if (glare)
+      clear_.next(levels_[i].image);
+    else
+      halve(i == 1 ? levels_[0].bytes : levels_[i - 1].image, levels_[i].image, scratch_);
 }
 
 // Glare becomes 255. Returns whether there is any.
@@ -67,23 +62,6 @@ bool ImagePyramid::copy_window(const cv::Mat& window, double glare_grey) {
   for (int row = 0; row < window.rows; ++row)
     any |= simd::copy_marked(window.ptr(row), static_cast<std::size_t>(window.cols), glare, levels_[0].bytes.ptr(row));
   return any;
-}
-
-void ImagePyramid::halve_around_glare(const cv::Mat& window, double glare_grey) {
-  cv::compare(window, cv::Scalar(glare_grey), glare_, cv::CMP_GE);
-  cv::dilate(glare_, glare_, cv::Mat(), cv::Point(-1, -1), kHalo);
-  glare_.convertTo(clear_[0], CV_32F, -1.0 / 255, 1);
-  levels_[0].bytes.convertTo(clear_grey_[0], CV_32F);
-  cv::multiply(clear_grey_[0], clear_[0], clear_grey_[0]);
-  for (std::size_t i = 1; i < static_cast<std::size_t>(count_); ++i) {
-    const std::size_t from = (i + 1) % 2, to = i % 2;  // two buffers in turn: pyrDown must not work in place
-    cv::pyrDown(clear_[from], clear_[to]);
-    cv::pyrDown(clear_grey_[from], clear_grey_[to]);
-    cv::max(clear_[to], kSmallestClearShare / 2, share_);  // no division by 0
-    cv::divide(clear_grey_[to], share_, levels_[i].image);
-    cv::compare(clear_[to], cv::Scalar(kSmallestClearShare), glare_, cv::CMP_LT);
-    levels_[i].image.setTo(255, glare_);
-  }
 }
 
 }  // namespace heartservo::tracking

@@ -3,10 +3,12 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "tracking/planar/clear_means.hpp"
+
 namespace heartservo::tracking {
 
-/// One level: shows the picture's window whose first pixel is (u0, v0) of the *full* picture at this level's scale; pixel
-/// (u, v) of the full picture is at (u / 2^level, v / 2^level).
+/// One level: shows the picture's window whose first pixel is (u0, v0) of the *full* picture at this level's scale;
+/// pixel (u, v) of the full picture is at (u / 2^level, v / 2^level).
 struct PyramidLevel {
   cv::Mat image;  ///< CV_32FC1, of level 1 and up
   cv::Mat bytes;  ///< CV_8UC1, of level 0; readable one row and four pixels beyond its borders
@@ -23,8 +25,7 @@ struct PyramidLevel {
 inline constexpr float kSaturatedGrey = 240;
 
 /// Grey picture, in float halved again and again (Gaussian, halve.hpp), only inside a window of it. Glare is not
-/// smeared into the coarse levels: their pixels are means over what is clear (normalised convolution, Knutsson &
-/// Westin, CVPR 1993), and 255 where little is.
+/// smeared into the coarse levels (clear_means.hpp).
 class ImagePyramid {
  public:
   ImagePyramid() = default;
@@ -39,13 +40,12 @@ class ImagePyramid {
 
  private:
   bool copy_window(const cv::Mat& window, double glare_grey);
-  void halve_around_glare(const cv::Mat& window, double glare_grey);
 
   std::vector<PyramidLevel> levels_;
-  std::vector<std::uint8_t> bytes_;           // of level 0
-  std::vector<std::vector<float>> storage_;   // of each level's image: grows, never shrinks
+  std::vector<std::uint8_t> bytes_;          // of level 0
+  std::vector<std::vector<float>> storage_;  // of each level's image: grows, never shrinks
   std::vector<float> scratch_;
-  cv::Mat glare_, share_, clear_[2], clear_grey_[2];
+  ClearMeans clear_;
   int count_ = 0;
 };
 

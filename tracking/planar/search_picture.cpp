@@ -1,9 +1,8 @@
 #include "tracking/planar/search_picture.hpp"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 
-#include "tracking/planar/patch.hpp"
+#include "tracking/planar/spread.hpp"
 
 namespace heartservo::tracking {
 
@@ -19,24 +18,30 @@ void SearchPicture::build(const cv::Mat& grey, const cv::Rect& window, int level
   }
   if (!has_glare_) return;
   glare_.resize(static_cast<std::size_t>(levels));
-  const auto dilate = [this](const cv::Mat& from, int side) {
-    cv::dilate(from, spread_, cv::Mat::ones(side, side, CV_8UC1), {-1, -1}, 1, cv::BORDER_REPLICATE);
-  };
   for (int l = 0; l < levels; ++l) {
+    const PyramidLevel& of = pyramid_.level(l);
     PyramidLevel& level = glare_[static_cast<std::size_t>(l)];
-    level.u0 = pyramid_.level(l).u0, level.v0 = pyramid_.level(l).v0, level.scale = pyramid_.level(l).scale;
-    level.image.create(pyramid_.level(l).rows(), pyramid_.level(l).cols(), CV_32FC1);
+    level.u0 = of.u0, level.v0 = of.v0, level.scale = of.scale;
+    const auto cols = static_cast<std::size_t>(of.cols()), size = cols * static_cast<std::size_t>(of.rows());
     if (l == 0) {
-      for (int v = 0; v < finest.rows(); ++v)
-        for (int u = 0; u < finest.cols(); ++u)
-          level.image.at<float>(v, u) = static_cast<float>(finest.bytes.at<std::uint8_t>(v, u)) >= kSaturatedGrey;
-      dilate(level.image, 3);
-      spread_.copyTo(level.image);
-    } else {  // cv::pyrDown mixes 5 x 5 pixels
-      dilate(glare_[static_cast<std::size_t>(l) - 1].image, 5);
-      for (int v = 0; v < level.image.rows; ++v)
-        for (int u = 0; u < level.image.cols; ++u) level.image.at<float>(v, u) = spread_.at<float>(2 * v, 2 * u);
+      mask_.resize(std::max(mask_.size(), size));
+      for (int v = 0; v < of.rows(); ++v)
+        for (std::size_t u = 0; u < cols; ++u)
+          mask_[static_cast<std::size_t>(v) * cols + u] = static_cast<float>(finest.bytes.ptr(v)[u]) >= kSaturatedGrey;
+      spread(mask_.data(), of.cols(), of.rows(), 1, mask_.data(), scratch_);
+    } else {  // halving mixes 5 x 5 pixels
+      const PyramidLevel& before = pyramid_.level(l - 1);
+      spread(mask_.data(), before.cols(), before.rows(), 2, mask_.data(), scratch_);
+      const auto stride = 2 * static_cast<std::size_t>(before.cols());
+      for (std::size_t v = 0; v < static_cast<std::size_t>(of.rows());
+           ++v)  // never writes before what is still to read
+        for (std::size_t u = 0; u < cols; ++u) mask_[v * cols + u] = mask_[v * stride + 2 * u];
     }
+    if (values_.size() < glare_.size()) values_.resize(glare_.size());
+    std::vector<float>& values = values_[static_cast<std::size_t>(l)];
+    values.resize(std::max(values.size(), size));
+    std::copy(mask_.begin(), mask_.begin() + static_cast<std::ptrdiff_t>(size), values.begin());
+    level.image = cv::Mat(of.rows(), of.cols(), CV_32FC1, values.data());
   }
 }
 

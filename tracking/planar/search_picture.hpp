@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "tracking/planar/image_pyramid.hpp"
@@ -19,7 +20,8 @@ class SearchPicture {
  private:
   ImagePyramid pyramid_;
   std::vector<PyramidLevel> glare_;
-  cv::Mat spread_;
+  std::vector<std::uint8_t> mask_, scratch_;
+  std::vector<std::vector<float>> values_;  // of each level's glare: grows, never shrinks
   bool has_glare_ = false;
 };
 
