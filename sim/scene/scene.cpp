@@ -42,7 +42,7 @@ void check_depth(const Scene& scene, std::vector<std::string>& problems) {
 }  // namespace
 
 void EngineOptions::fields(FieldVisitor& v) {
-  v.choice({"tracker", "", "follows the region and the tool's marker"}, tracker, tracking::trackers().names());
+  v.choice({"tracker", "", "follows the region; the tool's marker, a rigid plate, is followed by esm"}, tracker, tracking::trackers().names());
   v.choice({"estimator", "", "pixels to metres"}, estimator, tracking::estimators().names());
   v.choice({"predictor", "", "foresees the goal"}, predictor, servo::predictors().names());
   v.choice({"controller", "", "control law"}, controller, servo::control_laws().names());

@@ -63,7 +63,8 @@ servo::LoopStages make_stages(const Scene& scene, Table& table) {
   stages.refine_target = refiner(camera, picked.target_edge_ratio, picked.target_plate, table.region_side_m());
   if (scene.loop.tip.use_marker) {
     estimator.side_m = table.marker_side_m();
-    stages.marker_tracker = tracking::trackers().make(scene.engines.tracker, camera, scene.tracking);
+    // a rigid plate needs no more, and trackers of the heart are compared with the same tip
+    stages.marker_tracker = tracking::trackers().make("esm", camera, scene.tracking);
     stages.marker_estimator = tracking::estimators().make("landmark_refined", estimator);
     stages.refine_marker = refiner(camera, picked.marker_edge_ratio, picked.marker_plate, table.marker_side_m());
   }
