@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kCorrelation = 0.3;   // of successive beats' stretch
 constexpr double kRateDrift = 1e-3;    // relative change of f in a second, standard deviation
-constexpr double kPhaseJitter = 1e-4;  // cycles in a root second: the model is not the heart
+constexpr double kPhaseJitter = 3e-3;  // cycles in a root second: the model is not the heart
 
 double wrapped(double cycles) { return cycles - std::floor(cycles); }
 

@@ -7,7 +7,7 @@ namespace heartservo::servo {
 
 namespace {
 
-constexpr double kSoftness = 0.3;
+constexpr double kSoftness = 2;
 constexpr int kFirstHarmonics = 6;
 constexpr double kFirstCorrelation_s = 0.08, kSettling_s = 6;
 constexpr double kLearning_s = 3;    // after so long the model is good enough to tell the unusual
