@@ -13,6 +13,7 @@
 #include "sim/heart/heart_surface.hpp"
 #include "sim/robot/registry.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/table/heart_beats.hpp"
 #include "sim/table/stages.hpp"
 #include "tracking/settings/errors.hpp"
 
@@ -26,8 +27,7 @@ struct Truth {
   servo::SurgeonPath path;
   explicit Truth(const sim::Scene& s)
       : scene(s),
-        surface(s.surface,
-                sim::HeartMotion(s.motion, static_cast<std::uint64_t>(s.seed) * 1000003ULL + 1, s.duration_s + 1),
+        surface(s.surface, sim::heart_motion(s, static_cast<std::uint64_t>(s.seed) * 1000003ULL + 1),
                 static_cast<std::uint64_t>(s.seed) * 1000003ULL + 2),
         path(sim::surgeon_path(s)) {}
   Eigen::Isometry3d pose(double t) const { return surface.T_camera_landmark(0, t); }
@@ -74,8 +74,8 @@ struct Blind final : tracking::TargetTracker {
   tracking::Track track(const tracking::Frame& frame) override {
     tracking::Track t;
     t.time_s = frame.time_s;
-    t.state = frame.time_s >= lost_from && frame.time_s < lost_to ? tracking::TrackState::LOST
-                                                                  : tracking::TrackState::OK;
+    t.state =
+        frame.time_s >= lost_from && frame.time_s < lost_to ? tracking::TrackState::LOST : tracking::TrackState::OK;
     return t;
   }
   Eigen::Vector2d carry(const Eigen::Vector2d& p) const override { return p; }
@@ -129,6 +129,9 @@ servo::ScoreSummary run(const sim::Scene& scene, const std::string& predictor, c
   control.period_s = 1 / clock.rate;
   control.max_speed = scene.loop.guard.max_speed;
   control.max_acceleration = scene.loop.guard.max_acceleration;
+  if (auto ecg = sim::heart_ecg(scene, truth.surface.motion().beats(),
+                                static_cast<std::uint64_t>(scene.seed) * 1000003ULL + 7))
+    stages.ecg = std::make_unique<servo::EcgMonitor>(std::move(ecg));
   stages.control_law = servo::control_laws().make(law, control);
   servo::LoopOptions options = scene.loop;
   options.frame_rate_hz = clock.rate;
@@ -185,11 +188,11 @@ int main(int argc, char** argv) {
         for (const int seed : seeds) {
           scene.seed = seed;
           const auto s = run(scene, predictor, law, lost_s);
-          fmt::print("{:<22} {:<18} seed {}: RMS {:.4f} mm (x {:.4f} y {:.4f} z {:.4f}), 95 % {:.3f}, max {:.3f}, "
-                     "cancelled {:.2f} %\n",
-                     predictor, law, seed, 1e3 * s.residual.rms, 1e3 * s.residual_axis_rms.x(),
-                     1e3 * s.residual_axis_rms.y(), 1e3 * s.residual_axis_rms.z(), 1e3 * s.residual.p95,
-                     1e3 * s.residual.max, s.reduction_percent);
+          fmt::print(
+              "{:<22} {:<18} seed {}: RMS {:.4f} mm (x {:.4f} y {:.4f} z {:.4f}), 95 % {:.3f}, max {:.3f}, "
+              "cancelled {:.2f} %\n",
+              predictor, law, seed, 1e3 * s.residual.rms, 1e3 * s.residual_axis_rms.x(), 1e3 * s.residual_axis_rms.y(),
+              1e3 * s.residual_axis_rms.z(), 1e3 * s.residual.p95, 1e3 * s.residual.max, s.reduction_percent);
         }
   } catch (const std::exception& e) {
     fmt::print(stderr, "heartservo_control_goals: {}\n", e.what());
