@@ -7,11 +7,11 @@ namespace heartservo::servo {
 
 namespace {
 
-constexpr double kSoftness = 2;
+constexpr double kSoftness = 0.8;
 constexpr int kFirstHarmonics = 6;
 constexpr double kFirstCorrelation_s = 0.08, kSettling_s = 6;
 constexpr double kLearning_s = 3;    // after so long the model is good enough to tell the unusual
-constexpr double kAnotherBeat = 12;  // chi^2 with 3 degrees of freedom: one in 130 by chance, and then little is lost
+constexpr double kAnotherBeat = 20;  // chi^2 with 3 degrees of freedom: one in 6000 by chance
 constexpr double kAnotherStretch =
     1;                        // standard deviation: of a beat half as long, diastole runs at more than twice its rate
 constexpr double kUsual = 9;  // a rare misfit counts as three standard deviations in what the model leaves
