@@ -25,6 +25,9 @@ else
 fi
 { read -r folder; read -r version; } <<<"$kernel"
 
+accel_text=$("$here/accel.sh" "$folder/boot/vmlinuz-$version") || exit $?
+read -r -a accel <<<"$accel_text"
+
 if [[ -e ${script%.sh}.host.sh ]]; then bash "${script%.sh}.host.sh" "$program"; fi
 
 work=$(mktemp -d)
@@ -66,7 +69,6 @@ INIT
 chmod +x "$root/init"
 (cd "$root" && find . -print0 | cpio -0 -o -H newc --quiet) >"$work/initrd"
 
-read -r -a accel < <("$here/accel.sh" "$folder/boot/vmlinuz-$version")
 echo "the machine: ${accel[*]}"
 status=0
 timeout --kill-after=10 "$seconds" qemu-system-x86_64 -M q35 "${accel[@]}" -smp 2 -m 2048 \
