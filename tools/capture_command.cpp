@@ -51,7 +51,7 @@ int probe_device(const CaptureOptions& o, const tracking::v4l2::CameraOptions& c
 
 /// What became of a recording.
 struct Outcome {
-  bool interrupted = false;  ///< Ctrl-C, though a length was asked for
+  bool interrupted = false;  ///< Ctrl-C
   std::string failure;       ///< of the device
   std::string stopped;       ///< of the disk
   std::uint64_t written = 0, dropped = 0;
@@ -63,7 +63,6 @@ Outcome record(const CaptureOptions& o, tracking::v4l2::V4l2Camera& camera, trac
                Recorder& recorder) {
   Outcome outcome;
   const std::uint64_t most = o.run.frames ? static_cast<std::uint64_t>(*o.run.frames) : UINT64_MAX;
-  const bool endless = !o.run.frames && o.seconds <= 0;
   const Interrupt interrupt;
   Progress progress("capture " + stem_of(camera.description()), o.run.frames ? static_cast<std::size_t>(most) : 0,
                     o.run.quiet);
@@ -77,7 +76,7 @@ Outcome record(const CaptureOptions& o, tracking::v4l2::V4l2Camera& camera, trac
   std::uint64_t taken = keep();
   while (taken < most && recorder.stopped().empty()) {
     if (interrupt.requested()) {
-      outcome.interrupted = !endless;
+      outcome.interrupted = true;
       break;
     }
     if (o.seconds > 0 && camera.now_s() - begin >= o.seconds) break;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# boot.sh SCRIPT PROGRAM SECONDS MODULE...: boots a Debian kernel in QEMU (software emulation: no KVM is needed), with the
+# boot.sh SCRIPT PROGRAM SECONDS MODULE...: boots a Debian kernel in QEMU (emulated where there is no KVM), with the
 # machine's own file system to read, loads nothing but the modules' files, and runs SCRIPT there as root, with PROGRAM in
 # $HEARTSERVO. SCRIPT says "PASS name" or "FAIL name: why" for every check. Ends with 0 when all passed, 77 when it cannot
 # run here. Everything is under a time limit.
@@ -24,6 +24,9 @@ else
   exit "$code"
 fi
 { read -r folder; read -r version; } <<<"$kernel"
+
+accel_text=$("$here/accel.sh" "$folder/boot/vmlinuz-$version") || exit $?
+read -r -a accel <<<"$accel_text"
 
 if [[ -e ${script%.sh}.host.sh ]]; then bash "${script%.sh}.host.sh" "$program"; fi
 
@@ -66,8 +69,9 @@ INIT
 chmod +x "$root/init"
 (cd "$root" && find . -print0 | cpio -0 -o -H newc --quiet) >"$work/initrd"
 
+echo "the machine: ${accel[*]}"
 status=0
-timeout --kill-after=10 "$seconds" qemu-system-x86_64 -M q35 -accel tcg,thread=multi,tb-size=512 -cpu max -smp 2 -m 2048 \
+timeout --kill-after=10 "$seconds" qemu-system-x86_64 -M q35 "${accel[@]}" -smp 2 -m 2048 \
   -nodefaults -no-user-config -display none -serial stdio -no-reboot \
   -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap \
   -kernel "$folder/boot/vmlinuz-$version" -initrd "$work/initrd" \

@@ -28,7 +28,7 @@ void watch(double seconds, const std::function<std::string()>& read) {
     const std::string why = read();
     longest = std::max(longest, now_s() - call);
     if (why.empty()) {
-      ++frames;
+      if (frames++ == 0) std::printf("  %.2f s: first frame\n", now_s() - begin);
       if (!last.empty()) std::printf("  %.2f s: frames again\n", now_s() - begin);
     } else {
       ++errors;

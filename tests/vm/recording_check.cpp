@@ -1,15 +1,20 @@
 // recording_check: looks at what the tests in the virtual machine recorded.
 //
 //   recording_check colour RECORDING B G R TOLERANCE       every picture's middle has this colour
-//   recording_check raw SOURCE FILE WIDTH HEIGHT COUNT     writes grey frames one after the other, for v4l2-ctl to send
+//   recording_check raw SOURCE FILE WIDTH HEIGHT COUNT     writes grey frames one after the other, for v4l2-ctl to
+//   send,
+//                                                          and says how many there are and what to crop to
 //   recording_check jpegs SOURCE FOLDER WIDTH HEIGHT COUNT  writes colour JPEGs, for usb_camera to send
-//   recording_check frames RECORDING FILE WIDTH HEIGHT LEAST   every recorded picture is one of FILE, bit for bit, they
-//                                                          come in its order, and LEAST different ones are there
-//   recording_check track LIVE.csv FILES.csv               every place tracked live is one that was tracked in the
-//   files
+//   recording_check frames RECORDING FILE WIDTH HEIGHT CROP   every recorded picture is one of FILE, cropped, bit for
+//                                                          bit, they come in its order, and none of FILE is missing
+//   recording_check track LIVE.csv FILES.csv TIMES         the places tracked live are those tracked in the files, in
+//                                                          their order, from the first to the last; the files hold
+//                                                          every picture TIMES times
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -56,17 +61,18 @@ int raw(const std::vector<std::string>& a) {
   const cv::Size size(std::stoi(a[2]), std::stoi(a[3]));
   std::ofstream out(a[1], std::ios::binary);
   Frame frame;
+  cv::Rect part;
   int count = 0;
   for (; count < std::stoi(a[4]) && source->next(frame); ++count) {
     if (frame.grey.empty()) fail(frame.note);
     cv::Mat whole(size, CV_8UC1, cv::Scalar(16));
-    const cv::Rect part(0, 0, std::min(size.width, frame.grey.cols), std::min(size.height, frame.grey.rows));
+    part = {0, 0, std::min(size.width, frame.grey.cols), std::min(size.height, frame.grey.rows)};
     frame.grey(part).copyTo(whole(part));
     out.write(reinterpret_cast<const char*>(whole.data), static_cast<std::streamsize>(whole.total()));
   }
   out.close();
   if (!out || count == 0) fail("nothing written");
-  fmt::print("{}\n", count);
+  fmt::print("{} 0:0:{}:{}\n", count, part.width, part.height);
   return 0;
 }
 
@@ -89,30 +95,31 @@ int jpegs(const std::vector<std::string>& a) {
 
 int frames(const std::vector<std::string>& a) {
   std::ifstream in(a[1], std::ios::binary);
-  const std::size_t bytes = std::stoul(a[2]) * std::stoul(a[3]);
+  cv::Mat whole(std::stoi(a[3]), std::stoi(a[2]), CV_8UC1);
+  cv::Rect crop;
+  if (std::sscanf(a[4].c_str(), "%d:%d:%d:%d", &crop.x, &crop.y, &crop.width, &crop.height) != 4) fail("no crop");
+  const auto bytes = [](const cv::Mat& m) { return std::string(reinterpret_cast<const char*>(m.data), m.total()); };
   std::map<std::string, std::size_t> sent;  // picture to its number
-  std::string picture(bytes, '\0');
-  while (in.read(picture.data(), static_cast<std::streamsize>(bytes))) sent.emplace(picture, sent.size());
+  while (in.read(reinterpret_cast<char*>(whole.data), static_cast<std::streamsize>(whole.total())))
+    sent.emplace(bytes(whole(crop).clone()), sent.size());
   if (sent.empty()) fail("nothing was sent");
   const auto source = tracking::open_source(a[0], 0);
   Frame frame;
   std::set<std::size_t> seen;
   std::size_t count = 0, foreign = 0, back = 0, last = 0;
   for (; source->next(frame); ++count) {
-    picture.assign(reinterpret_cast<const char*>(frame.grey.data), frame.grey.total());
-    const auto found = sent.find(picture);
+    const auto found = sent.find(bytes(frame.grey));
     if (found == sent.end()) {
       if (!seen.empty()) ++foreign;  // before the first: what the input showed before the sender began
       continue;
     }
-    const std::size_t ahead = (found->second + sent.size() - last) % sent.size();
-    if (!seen.empty() && ahead > sent.size() / 2) ++back;
+    back += !seen.empty() && found->second < last;
     last = found->second;
     seen.insert(last);
   }
   fmt::print("{} frames recorded, {} of {} different ones sent are among them, {} are none of them, {} out of order\n",
              count, seen.size(), sent.size(), foreign, back);
-  return foreign == 0 && back == 0 && seen.size() >= std::stoul(a[4]) ? 0 : 1;
+  return foreign == 0 && back == 0 && seen.size() == sent.size() ? 0 : 1;
 }
 
 struct Place {
@@ -128,29 +135,46 @@ std::vector<Place> places(const std::string& file) {
   return result;
 }
 
+// The live rows are laid onto those of the files in order, from the first to the last, each on the same row as the one
+// before or one of the next few, so that the distances together are least. A tracker that sees a picture again comes
+// nearer, so a picture's place is where it came to in the end: the last of the TIMES rows of the files, and the nearest
+// live row among those laid onto any of these.
 int track(const std::vector<std::string>& a) {
-  auto live = places(a[0]);
-  const auto files = places(a[1]);
-  // displacements count from the first frame, which differs: align the two by the one live frame that fits best
-  std::size_t best_close = 0;
-  double worst = NAN;
-  for (std::size_t shift = 0; shift < files.size() && best_close < live.size(); ++shift) {
-    std::size_t close = 0;
-    double largest = 0;
-    for (const Place& p : live) {
-      double nearest = 1e18;  // squared
-      for (const Place& q : files) {
-        const double u = p.u + files[shift].u - q.u, v = p.v + files[shift].v - q.v, d = u * u + v * v;
-        if (d < nearest) nearest = d;  // false for NaN, a place that was lost
-      }
-      close += nearest < 0.15 * 0.15;
-      largest = std::max(largest, std::sqrt(nearest));
+  const auto live = places(a[0]), files = places(a[1]);
+  const std::size_t times = std::stoul(a[2]), rows = files.size(), pictures = rows / times;
+  const std::size_t most_skipped = 2 * times - 1;
+  constexpr double FAR = 10, CLOSE = 0.15;  // px
+  if (live.empty() || pictures == 0) fail("no row");
+  const auto distance = [](const Place& p, const Place& q) {
+    const double d = std::hypot(p.u - q.u, p.v - q.v);
+    return d < FAR ? d : FAR;  // also for NaN, a place that was lost
+  };
+  std::vector<double> least(rows, 1e18);
+  std::vector<std::vector<std::size_t>> from(live.size(), std::vector<std::size_t>(rows, 0));
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    std::vector<double> next(rows);
+    for (std::size_t k = 0; k < rows; ++k) {
+      std::size_t best = k;
+      for (std::size_t j = k - std::min(k, most_skipped + 1); j < k; ++j)
+        if (least[j] < least[best]) best = j;
+      from[i][k] = best;
+      next[k] = (i > 0 ? least[best] : k > 0 ? 1e18 : 0) + distance(live[i], files[k]);
     }
-    if (close > best_close) best_close = close, worst = largest;
+    least = next;
   }
-  fmt::print("{} of {} places tracked live are within 0.15 px of the way in the files; the farthest {:.2f} px\n",
-             best_close, live.size(), worst);
-  return best_close >= 0.97 * static_cast<double>(live.size()) && live.size() > 20 ? 0 : 1;
+  std::vector<double> nearest(pictures, 2 * FAR);  // until it is seen
+  for (std::size_t i = live.size(), k = pictures * times - 1; i-- > 0; k = from[i][k]) {
+    const std::size_t picture = k / times;
+    nearest[picture] = std::min(nearest[picture], distance(live[i], files[picture * times + times - 1]));
+  }
+  const auto unseen = std::erase_if(nearest, [](double d) { return d > FAR; });
+  const auto close = std::count_if(nearest.begin(), nearest.end(), [](double d) { return d < CLOSE; });
+  const double farthest = nearest.empty() ? FAR : *std::max_element(nearest.begin(), nearest.end());
+  fmt::print(
+      "{} places tracked live, in order: {} of {} pictures within {} px of their place in the files, {} not seen, the "
+      "farthest {:.2f} px\n",
+      live.size(), close, pictures, CLOSE, unseen, farthest);
+  return static_cast<double>(close) >= 0.95 * static_cast<double>(pictures) && farthest < 3 ? 0 : 1;
 }
 
 }  // namespace
@@ -162,7 +186,7 @@ int main(int argc, char** argv) {
       {"raw", {5, raw}},
       {"jpegs", {5, jpegs}},
       {"frames", {5, frames}},
-      {"track", {2, track}}};
+      {"track", {3, track}}};
   const auto command = all.empty() ? commands.end() : commands.find(all[0]);
   if (command == commands.end() || all.size() != command->second.first + 1) fail("wrong usage; see the source");
   try {

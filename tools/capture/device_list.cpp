@@ -40,6 +40,12 @@ json json_of(const DeviceOffer& offer) {
   return j;
 }
 
+// Without the device's name and the advice to look at this list.
+std::string in_list(const std::string& device, std::string problem) {
+  if (problem.starts_with(device + ": ")) problem.erase(0, device.size() + 2);
+  return problem.substr(0, problem.find("; "));
+}
+
 }  // namespace
 
 json device_list() {
@@ -53,8 +59,8 @@ json device_list() {
     }
     try {
       devices.push_back(json_of(offer_of(calls, fd, device)));
-    } catch (const DeviceError& e) {  // an output, a codec
-      devices.push_back({{"device", device}, {"problem", e.what()}});
+    } catch (const DeviceError& e) {  // an output, a codec, a camera's metadata
+      devices.push_back({{"device", device}, {"problem", in_list(device, e.what())}});
     }
     calls.close(fd);
   }

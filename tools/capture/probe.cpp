@@ -73,7 +73,8 @@ json probe(const CameraOptions& options, double seconds) {
       }
   }
   if (j["formats"].empty()) j["formats"].push_back(measured(options, options.format, seconds));
-  for (const auto& c : device.controls)
+  const Device after = looked_at(options.device);  // now that the input is chosen: controls may be its own
+  for (const auto& c : after.controls)
     j["controls"].push_back({{"name", c.name},
                              {"low", c.low},
                              {"high", c.high},

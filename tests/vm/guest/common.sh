@@ -3,7 +3,7 @@
 
 export LC_ALL=C
 BUILT=$(dirname "$HEARTSERVO")/tests/vm
-MADE=$BUILT/made
+MADE=$BUILT/made/$(basename "$0" .sh)
 cd /tmp
 mkfifo server.fifo
 "$BUILT/fork_server" server.fifo &

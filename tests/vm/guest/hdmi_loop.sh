@@ -8,32 +8,37 @@ timeout 10 v4l2-ctl -d /dev/video1 --set-dv-bt-timings index=0 >/dev/null
 timeout 10 v4l2-ctl -d /dev/video1 --set-fmt-video-out=width=640,height=480,pixelformat=GREY >/dev/null || echo "FAIL GREY output"
 timeout 10 v4l2-ctl -d /dev/video0 -c hdmi_000_0_is_connected_to=2 2>/dev/null ||
   timeout 10 v4l2-ctl -d /dev/video1 -c loop_video=1 || echo "FAIL the loop cannot be closed"
-source=/dev/video0,format=GREY,frozen-s=0,frames=every
-count=$(cat $MADE/count)
-bytes=$((640 * 480))
+control osd_text_mode=2  # else the input's clock is written over the picture
+read -r count crop <$MADE/sent
+source=/dev/video0,format=GREY,crop=$crop,frozen-s=0
 
-# send FLAG: the first picture again and again until FLAG is there, then all, then the last for a while
-send() {
-  {
-    until [ -e "$1" ]; do head -c $bytes $MADE/frames.raw; done
-    cat $MADE/frames.raw
-    for _ in $(seq 60); do tail -c $bytes $MADE/frames.raw; done
-  } | timeout 150 v4l2-ctl -d /dev/video1 --stream-out-mmap=4 --stream-from=- >/dev/null 2>&1
+# sending TIMES NAME BEGIN COMMAND...: the command, with every picture sent TIMES times once the file BEGIN is there, ended
+# as by Ctrl-C when all were sent
+sending() {
+  local times=$1 name=$2 begin=$3 code
+  shift 3
+  rm -f done end
+  "$BUILT/picture_sender" $MADE/frames.raw $((640 * 480)) $times $begin done end |
+    timeout 300 v4l2-ctl -d /dev/video1 --stream-out-mmap=4 --stream-from=- >/dev/null 2>/tmp/sender &
+  local sender=$!
+  sleep 2
+  timeout --kill-after=60 300 "$@" >/tmp/out 2>/tmp/err &
+  local job=$!
+  until_there done 250 || echo "FAIL $name: not all was sent: $(tail -c 300 /tmp/sender) $(cat /tmp/err)"
+  sleep 0.5
+  kill -TERM $job
+  wait $job
+  code=$?
+  touch end
+  wait $sender
+  [ $code -eq 130 ] && echo "PASS $name" || echo "FAIL $name: ended with $code: $(cat /tmp/err)"
 }
 
-send rec.partial/frames.csv &
-sender=$!
-sleep 2
-check "recording" 120 "$HEARTSERVO" capture $source --frames $((count + 60)) --quiet --out rec
-wait $sender
-check "bit for bit" 60 "$CHECK" frames rec $MADE/frames.raw 640 480 $((count * 8 / 10))
-says "nothing was dropped by us" rec/summary.json '"queue_dropped": 0' '"dropped": 0'
-check "tracked from the recording" 150 "$HEARTSERVO" track rec --roi "$(cat $MADE/roi)" --quiet --out from_files
+sending 4 "recording" rec.partial/frames.csv "$HEARTSERVO" capture $source --quiet --out rec
+check "bit for bit" 90 "$CHECK" frames rec $MADE/frames.raw 640 480 $crop
+says "nothing was dropped by us" rec/summary.json '"dropped": 0'
+grep -E '"(missing|delivered)"' rec/summary.json  # by the driver, in an emulated machine that is slow
 
-send live.partial &
-sender=$!
-sleep 2
-check "tracked live" 150 "$HEARTSERVO" track v4l2:$source --roi "$(cat $MADE/roi)" --frames $((count + 30)) --quiet --out live
-wait $sender
+sending 4 "tracking live" live.partial "$HEARTSERVO" track v4l2:$source --roi "$(cat $MADE/roi)" --quiet --out live
 says "the age of frames is known" live/frames.csv "frame/age_s"
-check "the same track" 120 "$CHECK" track live/frames.csv from_files/frames.csv
+check "the same track" 120 "$CHECK" track live/frames.csv $MADE/from_files/frames.csv 4

@@ -1,6 +1,7 @@
 # By hand, for docs/capture.md: what vpV4l2Grabber and cv::VideoCapture see on vivid's faults.
+#   (libvisp-sensor-dev installed)
 #   cmake --build --preset release --target peer_capture
-#   tests/vm/boot.sh tests/vm/guest/peers.sh build/release/heartservo 400 vivid
+#   tests/vm/boot.sh tests/vm/guest/peers.sh build/release/heartservo 1800 vivid
 . "$VM/guest/common.sh"
 peer=$BUILT/peer_capture
 
@@ -10,13 +11,14 @@ seen() {  # WHO NAME SETUP COMMAND...
   local who=$1 name=$2 setup=$3
   shift 3
   $setup
-  timeout --kill-after=3 25 "$peer" $who /dev/video0 6 >/tmp/seen 2>&1 &
+  timeout --kill-after=3 60 "$peer" $who /dev/video0 6 >/tmp/seen 2>&1 &
   local job=$!
-  sleep 2.5
+  for _ in $(seq 200); do grep -q "first frame" /tmp/seen && break; sleep 0.1; done
+  sleep 1
   "$@"
   wait $job
   echo "$who, $name: ended with $?"
-  cut -c1-200 /tmp/seen | head -8
+  cut -c1-200 /tmp/seen | head -12
 }
 nothing() { :; }
 bad() { control inject_v4l2_buf_flag_error=1; }

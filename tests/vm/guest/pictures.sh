@@ -2,7 +2,7 @@
 # any, else of the simulated one, and $made to where things for the guest go; writes the region to track there.
 program=$1
 build=$(dirname "$program")
-made=$build/tests/vm/made
+made=$build/tests/vm/made/$(basename "$0" .host.sh)
 vm=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 rm -rf "$made"
 mkdir -p "$made"

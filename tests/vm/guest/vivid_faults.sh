@@ -13,7 +13,7 @@ recording() {
   kill -TERM $job
   wait $job
   local code=$?
-  [ $code -eq 0 ] || { echo "FAIL $name: ended with $code: $(cat /tmp/err)"; return; }
+  [ $code -eq 130 ] || { echo "FAIL $name: ended with $code: $(cat /tmp/err)"; return; }
   says "$name, recording" $out/summary.json "$@"
   local rows=$(($(wc -l <$out/frames.csv) - 1))
   says "$name, none of $rows recorded frames lost" $out/summary.json "\"frames\": $rows," '"failure": null'

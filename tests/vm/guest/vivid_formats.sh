@@ -43,15 +43,20 @@ control dv_timings=0 2>/dev/null
 timeout 10 v4l2-ctl -d /dev/video0 -i 2 --set-dv-bt-timings index=0 >/dev/null
 check "HDMI" 60 "$HEARTSERVO" capture /dev/video0,input=HDMI,format=YUYV --frames 10 --out hdmi
 says "its timings" hdmi/summary.json '"timings": "640x480p 59' '"input": "HDMI'
-timeout 10 v4l2-ctl -d /dev/video0 -i 2 --set-dv-bt-timings index=1 >/dev/null  # 720x480i
-check "HDMI, single fields" 90 "$HEARTSERVO" capture /dev/video0,input=HDMI,format=YUYV --frames 10 --out fields
-says "of whole height" fields/summary.json "720x480.*single fields"
+timeout 10 v4l2-ctl -d /dev/video0 -i 2 >/dev/null
+interlaced=$(timeout 20 v4l2-ctl -d /dev/video0 --list-dv-timings |
+  awk '/Index:/ {i = $2} /Active width:/ {w = $3} /Frame format: interlaced/ && w == 1920 {print i; exit}')
+timeout 10 v4l2-ctl -d /dev/video0 --set-dv-bt-timings index=$interlaced >/dev/null
+check "HDMI, single fields" 90 "$HEARTSERVO" capture /dev/video0,input=HDMI,format=YUYV --grey --frames 3 --out fields
+says "of whole height" fields/summary.json "1920x1080.*single fields" '"timings": "1920x1080i'
 
 check "probe" 120 "$HEARTSERVO" capture --probe /dev/video0,size=320x180,input=0 --seconds 0.5
 says "what it measures" /tmp/out "YUYV .*320x180" "MJPG|BGR3" "brightness .* 0 to 255"
 
-mkdir -p small; mount -t tmpfs -o size=60m small small
-timeout 120 "$HEARTSERVO" capture /dev/video0,size=1280x720,input=0 --png --out small/full --frames 1000 >/tmp/out 2>/tmp/err
+mkdir -p small; mount -t tmpfs -o size=24m small small
+timeout 10 v4l2-ctl -d /dev/video0 -i 0 >/dev/null
+control test_pattern=21  # noise, which no PNG makes smaller
+timeout 120 "$HEARTSERVO" capture /dev/video0,size=320x180,rate=15,input=0 --png --out small/full --frames 1000 >/tmp/out 2>/tmp/err
 code=$?
 if [ $code -eq 2 ] && grep -q "is full" /tmp/err; then echo "PASS a full disk: $(cut -c1-200 /tmp/err)"; else echo "FAIL a full disk: $code $(cat /tmp/err)"; fi
 rows=$(($(wc -l <small/full/frames.csv) - 1))

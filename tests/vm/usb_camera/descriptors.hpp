@@ -10,7 +10,7 @@ namespace heartservo::test {
 using Bytes = std::vector<std::uint8_t>;
 
 inline constexpr int WIDTH = 640, HEIGHT = 480;
-inline constexpr std::uint32_t INTERVAL = 400000;  // of 100 ns: 25 Hz
+inline constexpr std::uint32_t INTERVAL = 800000;  // of 100 ns: 12.5 Hz
 inline constexpr std::uint32_t PAYLOAD = 16384;    // bytes of a bulk transfer
 enum Format : std::uint8_t { YUYV = 1, MJPEG = 2 };
 
@@ -49,8 +49,8 @@ inline Bytes frame_descriptor(int subtype) {
       .u8({26 + 4, 0x24, subtype, 1, 0})
       .u16(WIDTH)
       .u16(HEIGHT)
-      .u32(WIDTH * HEIGHT * 16)
-      .u32(WIDTH * HEIGHT * 16 * 25)
+      .u32(WIDTH * HEIGHT * 16 * 12)  // bits a second, least and most
+      .u32(WIDTH * HEIGHT * 16 * 13)
       .u32(WIDTH * HEIGHT * 2)
       .u32(INTERVAL)
       .u8({1})

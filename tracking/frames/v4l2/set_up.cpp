@@ -78,7 +78,15 @@ void set_format(SystemCalls& calls, int fd, const CameraOptions& options, std::u
     pix.width = static_cast<std::uint32_t>(options.size.width);
     pix.height = static_cast<std::uint32_t>(options.size.height);
   }
-  if (const int result = calls.ioctl(fd, VIDIOC_S_FMT, &format); result < 0)
+  int result = calls.ioctl(fd, VIDIOC_S_FMT, &format);
+  // A single field has half the lines; a device that can scale makes whole pictures of it when asked for the signal's.
+  if (result >= 0 && granted.timings && is_single_field(pix.field) &&
+      pix.height == static_cast<std::uint32_t>(granted.timings->size.height)) {
+    pix.height /= 2;
+    pix.bytesperline = pix.sizeimage = 0;
+    result = calls.ioctl(fd, VIDIOC_S_FMT, &format);
+  }
+  if (result < 0)
     throw DeviceError(fmt::format("{}: refuses {}: {}{}", granted.device, fourcc_name(fourcc), std::strerror(-result),
                                   result == -EBUSY ? "; another program uses the device" : ""));
   if (!can_decode(pix.pixelformat))

@@ -230,5 +230,14 @@ TEST_F(CaptureCoreTest, AlternatingFieldsMakeWholePictures) {
   EXPECT_EQ(events(), 0u);
 }
 
+TEST_F(CaptureCoreTest, ADeviceThatScalesDoesNotStretchSingleFields) {
+  driver.dv = true;
+  driver.field = V4L2_FIELD_ALTERNATE;
+  driver.scales_fields = true;
+  run_until(0.5);
+  EXPECT_EQ(frames.back().grey.size(), cv::Size(driver.signal_width, driver.signal_height));
+  EXPECT_EQ(events(), 0u);
+}
+
 }  // namespace
 }  // namespace heartservo::test

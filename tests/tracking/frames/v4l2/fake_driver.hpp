@@ -26,7 +26,8 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
   int width = 64, height = 48, line_padding = 0;
   double rate_hz = 50;
   std::uint32_t field = V4L2_FIELD_NONE;
-  bool dv = false;  ///< an HDMI input, else a webcam
+  bool scales_fields = false;  ///< makes a single field as high as it is asked to
+  bool dv = false;             ///< an HDMI input, else a webcam
   bool source_change_events = false;
   bool real_time = false;  ///< waits really
   std::uint32_t first_sequence = 0;
@@ -164,7 +165,10 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
     filled_.push_back(buffer);
   }
 
-  int lines() const { return field == V4L2_FIELD_ALTERNATE ? height / 2 : height; }
+  int lines() const {
+    if (field != V4L2_FIELD_ALTERNATE) return height;
+    return field_lines_ > 0 ? field_lines_ : height / 2;
+  }
   std::size_t pixel_bytes() const {
     return fourcc == V4L2_PIX_FMT_RGB24 || fourcc == V4L2_PIX_FMT_BGR24 ? 3
            : fourcc == V4L2_PIX_FMT_YUYV || fourcc == V4L2_PIX_FMT_UYVY ? 2
@@ -235,6 +239,7 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
       case VIDIOC_G_FMT:
       case VIDIOC_S_FMT: {
         auto& pix = static_cast<v4l2_format*>(argument)->fmt.pix;
+        if (request == VIDIOC_S_FMT && scales_fields) field_lines_ = static_cast<int>(pix.height);
         pix = {};
         pix.width = static_cast<std::uint32_t>(width);
         pix.height = static_cast<std::uint32_t>(lines());
@@ -315,7 +320,7 @@ class FakeDriver final : public tracking::v4l2::SystemCalls {
   std::mutex mutex_;
   const double begin_s_ = 1000;
   double now_ = begin_s_, due_ = 0;
-  int fd_ = -1, input_ = 0;
+  int fd_ = -1, input_ = 0, field_lines_ = 0;
   bool streaming_ = false, gone_ = false;
   std::uint32_t sequence_ = 0, picture_ = 0;
   std::multimap<double, std::function<void(FakeDriver&)>> plan_;
