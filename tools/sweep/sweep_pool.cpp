@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -74,6 +75,7 @@ Child start(const SweepPlan& plan, std::uint64_t run) {
   const pid_t pid = ::fork();
   if (pid < 0) throw ConfigError(fmt::format("no process can be made: {}; take fewer --jobs", std::strerror(errno)));
   if (pid == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would take its answer, and it holds the folder's lock
     ::close(ends[0]);
     const std::string text = carry_out(plan, run).dump(-1, ' ', false, json::error_handler_t::replace);
     std::size_t sent = 0;

@@ -84,6 +84,36 @@ TEST_F(SweepCommand, AFailingRunIsRecordedAndTheRestGoesOn) {
   EXPECT_NE(read_text(folder_ / "swept/results.csv").find("the run is refused"), std::string::npos);
 }
 
+TEST_F(SweepCommand, TwoAtOnceAreRefusedOrTakeTurns) {
+  const std::string file = sweep("  seed: {from: 1, to: 8}\n");
+  Outcome refused, waited;
+  const Outcome first = run({"sweep", file, "--out", "swept", "--jobs", "1", "--quiet"}, [&](pid_t child) {
+    if (waited.code >= 0 || !fs::exists(folder_ / "swept/runs.csv")) return;
+    ::kill(child, SIGSTOP);  // it is in the middle while the second tries
+    refused = run({"sweep", file, "--out", "swept", "--quiet"});
+    waited = run({"sweep", file, "--out", "swept", "--quiet", "--wait"}, [&](pid_t) { ::kill(child, SIGCONT); });
+  });
+  EXPECT_EQ(first.code, 0) << first.err;
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("another heartservo is writing"), std::string::npos) << refused.err;
+  EXPECT_EQ(waited.code, 0) << waited.err;
+  const std::string runs = read_text(folder_ / "swept/runs.csv");
+  EXPECT_EQ(std::count(runs.begin(), runs.end(), '\n'), 9) << "each once";
+}
+
+TEST_F(SweepCommand, NoRunOutlivesASweepThatIsKilled) {
+  const std::string file = sweep("  seed: {from: 1, to: 200}\n");
+  const Outcome o = run({"sweep", file, "--out", "swept", "--quiet"}, [&](pid_t child) {
+    if (fs::exists(folder_ / "swept/runs.csv") && read_text(folder_ / "swept/runs.csv").find("\n") != std::string::npos)
+      ::kill(child, SIGKILL);
+  });
+  EXPECT_EQ(o.code, 128 + SIGKILL);
+  Outcome next;
+  for (int i = 0; i < 20 && next.code != 0; ++i)  // the runs die a moment after it
+    next = run({"sweep", file, "--out", "swept", "--merge", "--quiet"});
+  EXPECT_EQ(next.code, 0) << "the folder is free: " << next.err;
+}
+
 TEST_F(SweepCommand, BadOnesAreRefused) {
   expect_refused(3, {"sweep", "nowhere.yaml"}, {"nowhere.yaml"});
   expect_refused(2, {"sweep", sweep("  engines.predictr: [hold]\n"), "--out", "x"}, {"did you mean 'predictor'"});
