@@ -15,6 +15,8 @@
 #include <cstring>
 #include <list>
 
+#include "sim/endoscope/painted_pattern.hpp"
+#include "sim/endoscope/tool_view.hpp"
 #include "tools/servo_run.hpp"
 #include "tracking/settings/errors.hpp"
 
@@ -47,6 +49,7 @@ json carry_out(const SweepPlan& plan, std::uint64_t run) {
     request.source = plan.scene;
     request.label = "sweep";
     request.quiet = true;
+    request.pictures = false;
     const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
     const ServoOutcome outcome = run_loop(request);
     if (outcome.interrupted) return {{"status", "interrupted"}};
@@ -122,6 +125,9 @@ void run_pool(const SweepPlan& plan, const std::vector<std::uint64_t>& runs, int
     }
     children.clear();
   };
+  if (runs.empty()) return;
+  // What every run would paint anew, whatever its seed: the marker and the first landmark.
+  for (const std::uint32_t id : {sim::kMarkerPattern, 0u}) sim::pattern_picture(id);
   try {
     std::size_t next = 0;
     while (next < runs.size() || !children.empty()) {
