@@ -9,12 +9,11 @@
 #include "tools/command.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/progress.hpp"
-#include "tools/report/report.hpp"
 #include "tools/run_folder.hpp"
 #include "tools/servo_summary.hpp"
 #include "tools/sweep/sweep_pool.hpp"
+#include "tools/sweep/sweep_report.hpp"
 #include "tools/sweep/sweep_slurm.hpp"
-#include "tools/sweep/sweep_statistics.hpp"
 #include "tools/track_tables.hpp"
 #include "tracking/settings/errors.hpp"
 
@@ -41,75 +40,11 @@ std::pair<int, int> share_of(const std::string& text) {
   return {number, of};
 }
 
-ReportTable group_table(const SweepPlan& plan, const json& statistics) {
-  ReportTable table{"Medians over the seeds, with 95 % intervals", {}, {}, "", true};
-  for (const auto& axis : plan.axes)
-    if (axis.key != "seed") table.header.push_back(axis.key);
-  for (const char* name : {"runs", "stopped", "failed"}) table.header.emplace_back(name);
-  for (const auto& metric : plan.metrics) table.header.push_back(metric);
-  for (const json& group : statistics["groups"]) {
-    std::vector<std::string> row;
-    for (const auto& axis : plan.axes)
-      if (axis.key != "seed") row.push_back(group["values"][axis.key]);
-    for (const char* name : {"runs", "stopped", "failed"}) row.push_back(std::to_string(group[name].get<int>()));
-    for (const auto& metric : plan.metrics) {
-      const json& m = group["metrics"][metric];
-      row.push_back(m["runs"] == 0   ? std::string("-")
-                    : m["runs"] == 1 ? fmt::format("{:.4g}", m["median"].get<double>())
-                                     : fmt::format("{:.4g} [{:.4g}, {:.4g}]", m["median"].get<double>(),
-                                                   m["low"].get<double>(), m["high"].get<double>()));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  table.note = "Intervals of the median by the bootstrap (2000 resamples); failed runs are left out of them.";
-  return table;
-}
-
-ReportTable pair_table(const json& statistics) {
-  ReportTable table{"Pairs on the same seeds",
-                    {"axis", "a", "b", "everything else", "seeds", "median of a - b", "95 %", "a is less"},
-                    {},
-                    "",
-                    true};
-  for (const json& p : statistics["pairs"]) {
-    std::string others;
-    for (const auto& [key, value] : p["others"].items())
-      others += fmt::format("{}{} {}", others.empty() ? "" : ", ", key, value.get<std::string>());
-    table.rows.push_back({p["axis"], p["a"], p["b"], others, std::to_string(p["seeds"].get<int>()),
-                          fmt::format("{:.4g}", p["median_difference"].get<double>()),
-                          fmt::format("[{:.4g}, {:.4g}]", p["low"].get<double>(), p["high"].get<double>()),
-                          fmt::format("{:.0f} %", 100 * p["a_is_less"].get<double>())});
-    table.note = "Of " + p["metric"].get<std::string>() + ".";
-  }
-  return table;
-}
-
 // results.csv, results.json, report.html of what there is.
 int conclude(const SweepOptions& o, const SweepPlan& plan, const SweepStore& store) {
   store.write_sorted();
-  json summary = sweep_statistics(plan, store.results());
-  std::size_t failed = 0;
-  for (const auto& [run, r] : store.results()) failed += r.status == "failed";
-  summary["command"] = "sweep";
-  summary["version"] = HEARTSERVO_VERSION;
-  summary["sweep"] = plan.file;
-  summary["title"] = plan.title;
-  summary["runs"] = plan.runs();
-  summary["done"] = store.results().size();
-  summary["failed"] = failed;
-  Report report;
-  report.title = plan.title.empty() ? "sweep " + stem_of(plan.file) : plan.title;
-  report.headline = fmt::format("{} of {} runs are done{}.", store.results().size(), plan.runs(),
-                                failed > 0 ? fmt::format(", {} of them failed", failed) : "");
-  report.tables = {group_table(plan, summary)};
-  if (!summary["pairs"].empty()) report.tables.push_back(pair_table(summary));
-  if (failed > 0) {
-    ReportTable failures{"Failed runs", {"run", "error"}, {}, "Run the sweep again with --retry to repeat them.", true};
-    for (const auto& [run, r] : store.results())
-      if (r.status == "failed" && failures.rows.size() < 50) failures.rows.push_back({std::to_string(run), r.error});
-    report.tables.push_back(failures);
-  }
-  report.summary = summary;
+  const json summary = sweep_summary(plan, store.results());
+  const Report report = sweep_report(plan, store.results(), summary);
   std::ofstream(store.folder() / "results.json") << summary.dump(2) << "\n";
   write_report(report, store.folder() / "report.html");
   if (o.json) {

@@ -46,7 +46,12 @@ TEST_F(SweepCommand, RunsTheProductAndGivesTheSameInShares) {
   EXPECT_EQ(j["pairs"].size(), 1u);
   const std::string table = results("whole");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 7);
-  EXPECT_NE(read_text(folder_ / "whole/report.html").find("Pairs on the same seeds"), std::string::npos);
+  const std::string page = read_text(folder_ / "whole/report.html");
+  for (const char* part : {"Pairs on the same seeds", "<canvas id=\"chart0\"", "residual.rms_mm over the seeds"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  ASSERT_EQ(run({"report", "whole", "--out", "again.html", "--quiet"}).code, 0);
+  EXPECT_EQ(read_text(folder_ / "again.html"), read_text(folder_ / "whole/report.html"));
+  expect_refused(2, {"report", "whole", "whole"}, {"a sweep", "alone"});
   // as a run of its own gives it
   const json alone = json_of(run({"servo", scene("pig_2007"), "--frames", "30", "--settle-s", "0.1", "--predictor",
                                   "hold", "--seed", "2", "--json", "--quiet", "--no-video"}));
@@ -127,7 +132,7 @@ TEST_F(SweepCommand, BadOnesAreRefused) {
 }
 
 TEST_F(SweepCommand, ShippedSweepsAreGood) {
-  for (const char* name : {"latency", "control", "robustness", "arrhythmia"}) {
+  for (const char* name : {"latency", "control", "robustness", "arrhythmia", "readme"}) {
     const Outcome o = run({"sweep", HEARTSERVO_SOURCE_DIR "/scenes/sweeps/" + std::string(name) + ".yaml", "--count"});
     EXPECT_EQ(o.code, 0) << o.err;
     EXPECT_GT(std::stoi(o.out), 30) << name;
