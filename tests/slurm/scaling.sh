@@ -28,23 +28,25 @@ sweep_file tiny 2 "$runs"
 sweep_file short 100 24
 
 echo "== what a run of two frames costs, all told; memory of the sweep itself"
-begin=$(now)
-"$program" sweep tiny.yaml --out tiny --jobs 1 --quiet &
-sweep=$!
-while kill -0 $sweep 2>/dev/null; do
-  echo "$(($(wc -l 2>/dev/null <tiny/runs.csv || echo 1) - 1)) $(awk '/^VmRSS/ {print $2}' /proc/$sweep/status 2>/dev/null)"
+while [[ ! -e ended ]]; do
+  sweep=$(pgrep -o -f -- "sweep tiny.yaml --out tiny" || true)
+  echo "$(($(cat tiny/runs.csv 2>/dev/null | wc -l) - 1)) $(awk '/^VmRSS/ {print $2}' "/proc/$sweep/status" 2>/dev/null)"
   sleep 0.2
-done | awk 'NF == 2' >memory
-wait $sweep
+done | awk 'NF == 2 && $1 >= 0' >memory &
+begin=$(now)
+TIMEFORMAT='%U %S'
+{ time "$program" sweep tiny.yaml --out tiny --jobs 1 --quiet; } 2>cpu
 took=$(since "$begin")
-awk "BEGIN {printf \"%.1f ms a run, of which the run's process %.1f ms\n\", 1e3 * $took / $runs, 1e3 * $(
-  awk -F, 'NR > 1 {s += $(NF - 1)} END {print s / (NR - 1)}' tiny/results.csv)}"
-awk 'NR == 1 || $1 >= next_ {print "after " $1 " runs: " $2 " kB"; next_ = $1 + '$((runs / 5))'} END {print "after " $1 " runs: " $2 " kB"}' memory
+touch ended
+wait
+awk "{printf \"%.1f ms a run, %.1f ms of a processor\\n\", 1e3 * $took / $runs, 1e3 * (\$1 + \$2) / $runs}" cpu
+awk 'NR == 1 || $1 >= next_ {print "after " $1 " runs: " $2 " kB"; next_ = $1 + '$((runs / 5))'}
+     END {print "after " $1 " runs: " $2 " kB"}' memory
 
 for jobs in 1 2; do
   begin=$(now)
-  "$program" sweep short.yaml --out "jobs-$jobs" --jobs $jobs --quiet
-  echo "--jobs $jobs: $(rate 24 "$(since "$begin")")"
+  { time "$program" sweep short.yaml --out "jobs-$jobs" --jobs $jobs --quiet; } 2>cpu
+  echo "--jobs $jobs: $(rate 24 "$(since "$begin")"), $(awk '{print $1 + $2}' cpu) s of processors"
 done
 cluster_possible || exit 0
 mkdir cluster
