@@ -1,4 +1,4 @@
-// heartservo report: one page of one run, or of several side by side.
+// heartservo report: one page of one run, of several side by side, or of a sweep.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include "tools/report/stored_pictures.hpp"
 #include "tools/run_comparison.hpp"
 #include "tools/servo_report.hpp"
+#include "tools/sweep/sweep_report.hpp"
 #include "tracking/settings/errors.hpp"
 
 namespace heartservo::tools {
@@ -53,6 +54,13 @@ void one_run(const ReportOptions& o, const StoredRun& run) {
 }
 
 int run_report(const ReportOptions& o) {
+  for (const auto& folder : o.runs) {
+    if (!is_sweep(folder)) continue;
+    if (o.runs.size() > 1) throw ConfigError(folder + " is a sweep, which has a page of its own: give it alone");
+    const StoredSweep sweep = read_swept(folder);
+    write_page(o, sweep_report(sweep.plan, sweep.results, sweep_summary(sweep.plan, sweep.results)));
+    return DONE;
+  }
   std::vector<StoredRun> runs;
   for (const auto& folder : o.runs) runs.push_back(read_run(folder));
   for (const auto& run : runs)
@@ -74,8 +82,8 @@ int run_report(const ReportOptions& o) {
 Command add_report_command(CLI::App& program) {
   auto options = std::make_shared<ReportOptions>();
   ReportOptions& o = *options;
-  CLI::App* app = program.add_subcommand("report", "one page of one run, or of several side by side");
-  app->add_option("run", o.runs, "run folders")->required();
+  CLI::App* app = program.add_subcommand("report", "one page of one run, of several side by side, or of a sweep");
+  app->add_option("run", o.runs, "run folders, or the folder of a sweep")->required();
   app->add_option("--out", o.out, "the page (default report.html)")->type_name("FILE");
   app->add_flag("--quiet", o.quiet, "say nothing");
   app->footer(

@@ -143,7 +143,7 @@ ServoOutcome run_loop(ServoRequest request) {
       append(outcome.frames, record, truth);
       if (live) live_timing.add(record, now_s());
       if (window) show(*window, record);
-      if (request.real_time) continue;
+      if (request.real_time || !request.pictures) continue;
       const double off_px = record.frame.time_s < scene.settle_s ? NAN : (truth.tip_px - truth.goal_px).norm();
       if (record.frame.status == tracking::FrameStatus::OK)
         album.look_at({outcome.frames.rows() - 1, record.frame.time_s, off_px, "",

@@ -9,11 +9,11 @@
 #include "tools/command.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/progress.hpp"
-#include "tools/report/report.hpp"
 #include "tools/run_folder.hpp"
 #include "tools/servo_summary.hpp"
 #include "tools/sweep/sweep_pool.hpp"
-#include "tools/sweep/sweep_statistics.hpp"
+#include "tools/sweep/sweep_report.hpp"
+#include "tools/sweep/sweep_slurm.hpp"
 #include "tools/track_tables.hpp"
 #include "tracking/settings/errors.hpp"
 
@@ -23,13 +23,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uint64_t kManyRuns = 20000;  // more are asked for on purpose
-
 struct SweepOptions {
-  std::string file, out, share;
-  int jobs = 0;
-  bool yes = false, merge = false, retry = false, count = false, json = false, quiet = false;
+  std::string file, out, share, slurm;  // slurm: sbatch's options, kNoOptions for none
+  int jobs = 0, tasks = 0;
+  bool yes = false, merge = false, retry = false, wait = false, count = false, json = false, quiet = false;
 };
+
+constexpr const char* kNoOptions = "true";  // what CLI11 gives for a flag without a value
 
 // "3/8": the third of eight.
 std::pair<int, int> share_of(const std::string& text) {
@@ -40,75 +40,11 @@ std::pair<int, int> share_of(const std::string& text) {
   return {number, of};
 }
 
-ReportTable group_table(const SweepPlan& plan, const json& statistics) {
-  ReportTable table{"Medians over the seeds, with 95 % intervals", {}, {}, "", true};
-  for (const auto& axis : plan.axes)
-    if (axis.key != "seed") table.header.push_back(axis.key);
-  for (const char* name : {"runs", "stopped", "failed"}) table.header.emplace_back(name);
-  for (const auto& metric : plan.metrics) table.header.push_back(metric);
-  for (const json& group : statistics["groups"]) {
-    std::vector<std::string> row;
-    for (const auto& axis : plan.axes)
-      if (axis.key != "seed") row.push_back(group["values"][axis.key]);
-    for (const char* name : {"runs", "stopped", "failed"}) row.push_back(std::to_string(group[name].get<int>()));
-    for (const auto& metric : plan.metrics) {
-      const json& m = group["metrics"][metric];
-      row.push_back(m["runs"] == 0   ? std::string("-")
-                    : m["runs"] == 1 ? fmt::format("{:.4g}", m["median"].get<double>())
-                                     : fmt::format("{:.4g} [{:.4g}, {:.4g}]", m["median"].get<double>(),
-                                                   m["low"].get<double>(), m["high"].get<double>()));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  table.note = "Intervals of the median by the bootstrap (2000 resamples); failed runs are left out of them.";
-  return table;
-}
-
-ReportTable pair_table(const json& statistics) {
-  ReportTable table{"Pairs on the same seeds",
-                    {"axis", "a", "b", "everything else", "seeds", "median of a - b", "95 %", "a is less"},
-                    {},
-                    "",
-                    true};
-  for (const json& p : statistics["pairs"]) {
-    std::string others;
-    for (const auto& [key, value] : p["others"].items())
-      others += fmt::format("{}{} {}", others.empty() ? "" : ", ", key, value.get<std::string>());
-    table.rows.push_back({p["axis"], p["a"], p["b"], others, std::to_string(p["seeds"].get<int>()),
-                          fmt::format("{:.4g}", p["median_difference"].get<double>()),
-                          fmt::format("[{:.4g}, {:.4g}]", p["low"].get<double>(), p["high"].get<double>()),
-                          fmt::format("{:.0f} %", 100 * p["a_is_less"].get<double>())});
-    table.note = "Of " + p["metric"].get<std::string>() + ".";
-  }
-  return table;
-}
-
 // results.csv, results.json, report.html of what there is.
 int conclude(const SweepOptions& o, const SweepPlan& plan, const SweepStore& store) {
   store.write_sorted();
-  json summary = sweep_statistics(plan, store.results());
-  std::size_t failed = 0;
-  for (const auto& [run, r] : store.results()) failed += r.status == "failed";
-  summary["command"] = "sweep";
-  summary["version"] = HEARTSERVO_VERSION;
-  summary["sweep"] = plan.file;
-  summary["title"] = plan.title;
-  summary["runs"] = plan.runs();
-  summary["done"] = store.results().size();
-  summary["failed"] = failed;
-  Report report;
-  report.title = plan.title.empty() ? "sweep " + stem_of(plan.file) : plan.title;
-  report.headline = fmt::format("{} of {} runs are done{}.", store.results().size(), plan.runs(),
-                                failed > 0 ? fmt::format(", {} of them failed", failed) : "");
-  report.tables = {group_table(plan, summary)};
-  if (!summary["pairs"].empty()) report.tables.push_back(pair_table(summary));
-  if (failed > 0) {
-    ReportTable failures{"Failed runs", {"run", "error"}, {}, "Run the sweep again with --retry to repeat them.", true};
-    for (const auto& [run, r] : store.results())
-      if (r.status == "failed" && failures.rows.size() < 50) failures.rows.push_back({std::to_string(run), r.error});
-    report.tables.push_back(failures);
-  }
-  report.summary = summary;
+  const json summary = sweep_summary(plan, store.results());
+  const Report report = sweep_report(plan, store.results(), summary);
   std::ofstream(store.folder() / "results.json") << summary.dump(2) << "\n";
   write_report(report, store.folder() / "report.html");
   if (o.json) {
@@ -117,6 +53,47 @@ int conclude(const SweepOptions& o, const SweepPlan& plan, const SweepStore& sto
     fmt::print("{}\n\n", report.headline);
     for (const auto& table : report.tables) fmt::print("{}\n\n{}\n", table.title, terminal_text(table, true));
     fmt::print("report: {}\n", (store.folder() / "report.html").string());
+  }
+  return DONE;
+}
+
+// How the sweep's command begins, for hints.
+std::string command_of(const SweepOptions& o) {
+  const auto word = [](const std::string& text) {
+    return text.find_first_of(" \t'\"$\\") == std::string::npos ? text : fmt::format("\"{}\"", text);
+  };
+  return fmt::format("heartservo sweep {}{}", word(o.file), o.out.empty() ? "" : " --out " + word(o.out));
+}
+
+// Hands what is left to do to the cluster.
+int to_slurm(const SweepOptions& o, const SweepPlan& plan, const SweepStore& store) {
+  std::vector<std::uint64_t> left;
+  for (std::uint64_t i = 0; i < plan.runs(); ++i)
+    if (!store.has(i)) left.push_back(i);
+  if (left.empty()) return conclude(o, plan, store);
+  SlurmRequest request;
+  if (o.slurm != kNoOptions) request.options = o.slurm;
+  request.tasks = o.tasks;
+  request.jobs = std::max(1, o.jobs);
+  request.retry = o.retry;
+  const SlurmJobs jobs = submit(plan, store.folder(), left, request);
+  const std::string folder = store.folder().string();
+  if (o.json) {
+    fmt::print("{}\n", json{{"command", "sweep"},
+                            {"array_job", jobs.array},
+                            {"merge_job", jobs.merge},
+                            {"shares", jobs.shares},
+                            {"tasks", jobs.submitted},
+                            {"runs_left", left.size()},
+                            {"folder", folder}}
+                           .dump(2));
+  } else if (!o.quiet) {
+    fmt::print("job {}: {} of {} runs are left, in {} task{} (shares {} of {})\njob {}: merges when they have ended\n",
+               jobs.array, left.size(), plan.runs(), jobs.submitted.size(), jobs.submitted.size() == 1 ? "" : "s",
+               task_list(jobs.submitted), jobs.shares, jobs.merge);
+    fmt::print("watch:    squeue --jobs={},{}\nscripts and logs: {}/slurm\nresults:  {}/results.csv, report.html\n",
+               jobs.array, jobs.merge, folder, folder);
+    fmt::print("again:    {} --slurm --retry submits what is missing then, and what failed\n", command_of(o));
   }
   return DONE;
 }
@@ -133,14 +110,18 @@ int run_sweep(const SweepOptions& o) {
   const auto [share, shares] = o.share.empty() ? std::pair(0, 1) : share_of(o.share);
   const std::filesystem::path folder =
       std::filesystem::absolute(o.out.empty() ? "runs/sweep-" + stem_of(plan.file) : o.out);
-  SweepStore store(folder, plan, share);
-  if (o.merge) store.merge();
+  SweepStore store(folder, plan, share, o.wait);
+  if (o.merge || !o.slurm.empty()) store.merge();
   if (o.retry) store.forget_failed();
+  if (!o.slurm.empty()) return to_slurm(o, plan, store);
+  std::map<std::uint64_t, SweepResult> others;  // with another number of shares, their runs are others
+  if (share > 0) others = store.elsewhere();
+  if (o.retry) std::erase_if(others, [](const auto& r) { return r.second.status == "failed"; });
   std::vector<std::uint64_t> missing;
   if (!o.merge)
     for (std::uint64_t i = share > 0 ? static_cast<std::uint64_t>(share - 1) : 0; i < all;
          i += static_cast<std::uint64_t>(shares))
-      if (!store.has(i)) missing.push_back(i);
+      if (!store.has(i) && !others.contains(i)) missing.push_back(i);
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool interrupted = false;
   {
@@ -172,10 +153,21 @@ Command add_sweep_command(CLI::App& program) {
   app->add_option("sweep", o.file, "sweep file (.yaml)")->required();
   app->add_option("--out", o.out, "folder; what is in it is not run again (default: runs/sweep-NAME)")
       ->type_name("DIR");
-  app->add_option("--jobs", o.jobs, "runs at a time (default: one a core)")->check(CLI::Range(1, 4096));
-  app->add_option("--share", o.share, "carry out only the NUMBER-th of OF equal shares, into a file of its own")
-      ->type_name("NUMBER/OF");
-  app->add_flag("--merge", o.merge, "take over what shares have done, run nothing");
+  app->add_option("--jobs", o.jobs, "runs at a time (default: one a core; with --slurm, of each task: 1)")
+      ->check(CLI::Range(1, 4096));
+  auto* share =
+      app->add_option("--share", o.share, "carry out only the NUMBER-th of OF equal shares, into a file of its own")
+          ->type_name("NUMBER/OF");
+  auto* merge = app->add_flag("--merge", o.merge, "take over what shares have done, run nothing");
+  app->add_flag("--wait", o.wait, "when another heartservo is writing there, wait until it has ended");
+  auto* slurm = app->add_flag("--slurm", o.slurm,
+                              "submit a job array to the Slurm cluster that is there; --slurm='OPTIONS' are sbatch's")
+                    ->type_name("[=OPTIONS]")
+                    ->excludes(merge)
+                    ->excludes(share);
+  app->add_option("--tasks", o.tasks, "with --slurm: tasks of the array (default: four runs a task, at most 100)")
+      ->check(CLI::Range(1, 100000))
+      ->needs(slurm);
   app->add_flag("--retry", o.retry, "repeat the runs that failed");
   app->add_flag("--count", o.count, "print how many runs there are, and end");
   app->add_flag("--yes", o.yes, "yes, more than 20000 runs");
@@ -184,6 +176,7 @@ Command add_sweep_command(CLI::App& program) {
   app->footer(
       "Examples:\n  heartservo sweep scenes/sweeps/latency.yaml\n"
       "  heartservo sweep scenes/sweeps/latency.yaml --share 1/4 --out swept\n"
+      "  heartservo sweep scenes/sweeps/latency.yaml --slurm='--partition=long --time=2:00:00'\n"
       "The folder holds results.csv, results.json and report.html. An interrupted sweep goes on when it is run again.");
   return {app, [options] { return run_sweep(*options); }};
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 namespace heartservo::sim {
 namespace {
@@ -50,7 +52,9 @@ double painted_pattern(std::uint32_t id, double x, double y) {
   return mix(framed, 195, step(rim - kFrameEdge));
 }
 
-cv::Mat pattern_picture(std::uint32_t id, int size) {
+namespace {
+
+cv::Mat painted_picture(std::uint32_t id, int size) {
   constexpr int kSamples = 2;
   cv::Mat picture(size, size, CV_8UC1);
   for (int j = 0; j < size; ++j)
@@ -62,6 +66,17 @@ cv::Mat pattern_picture(std::uint32_t id, int size) {
       picture.at<std::uint8_t>(j, i) = cv::saturate_cast<std::uint8_t>(grey / (kSamples * kSamples));
     }
   return picture;
+}
+
+}  // namespace
+
+cv::Mat pattern_picture(std::uint32_t id, int size) {
+  static std::mutex mutex;
+  static std::map<std::pair<std::uint32_t, int>, cv::Mat> painted;
+  const std::lock_guard lock(mutex);
+  cv::Mat& picture = painted[{id, size}];
+  if (picture.empty()) picture = painted_picture(id, size);
+  return picture.clone();  // a caller may paint on it
 }
 
 }  // namespace heartservo::sim

@@ -19,7 +19,7 @@ inline constexpr double kFrameEdge = 0.84;
 double painted_pattern(std::uint32_t id, double x, double y);
 
 /// The pattern as a picture to print, CV_8UC1, outline to outline: pixel (row j, column i) is its mean over
-/// x = 2 i / size - 1 ... 2 (i + 1) / size - 1.
+/// x = 2 i / size - 1 ... 2 (i + 1) / size - 1. Painted once in a process, and in those forked from it.
 cv::Mat pattern_picture(std::uint32_t id, int size = 512);
 
 }  // namespace heartservo::sim

@@ -3,49 +3,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <regex>
-
-#include "tests/support/temporary_folder.hpp"
+#include "tests/tools/browser.hpp"
 #include "tests/tools/synthetic_report.hpp"
 
 namespace heartservo::tools {
 namespace {
 
-class ReportInBrowser : public testing::Test {
- protected:
-  void SetUp() override {
-#ifdef HEARTSERVO_SANITIZED
-    GTEST_SKIP() << "the browser sees the same page as without sanitizers";
-#endif
-    if (std::system("command -v chromium >/dev/null 2>&1") != 0)
-      GTEST_SKIP() << "chromium is not installed; ./run_tests.sh installs it";
-  }
-
-  // The page after its scripts and then `script` have run. `log_` has what the browser said meanwhile.
-  std::string opened(const Report& report, const std::string& script = "") {
-    const auto path = [&](const char* name) { return (folder_ / name).string(); };
-    test::write_text(path("report.html"), report_html(report) + "<script>" + script + "</script>");
-    const std::string command =
-        "timeout 100 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage"
-        " --disable-background-networking --disable-sync --no-first-run --enable-logging=stderr --v=0"
-        " --host-resolver-rules='MAP * ~NOTFOUND' --window-size=1280,900 --virtual-time-budget=4000"
-        " --user-data-dir=" +
-        path("profile") + " --dump-dom file://" + path("report.html") + " >" + path("dom.html") + " 2>" + path("log");
-    EXPECT_EQ(std::system(command.c_str()), 0);
-    log_ = test::read_text(path("log"));
-    return test::read_text(path("dom.html"));
-  }
-
-  const test::TemporaryFolder folder_;
-  std::string log_;
-};
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t n = 0;
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
-  return n;
-}
+using test::count;
+using test::ReportInBrowser;
 
 TEST_F(ReportInBrowser, DrawsEverythingWithoutComplaint) {
   const TimeTable table = test::synthetic_table(1900);

@@ -62,6 +62,14 @@ std::string other_plots(const Report& report) {
   return hint + section("Plots over time", "plots", html);
 }
 
+std::string chart_scripts(const Report& report) {
+  if (report.charts.empty()) return "";
+  return fmt::format(
+      "<script type=\"application/json\" id=\"charts\">{}</script>\n<script>{}</script>\n<script>{}</script>\n",
+      markup::script_safe(chart_data(report.charts)), markup::without_source_map(embedded::chart_library()),
+      embedded::chart_script());
+}
+
 std::string other_pictures(const Report& report) {
   std::string html;
   for (std::size_t i = 1; i < report.pictures.size(); ++i) html += markup::image(report.pictures[i]);
@@ -103,32 +111,37 @@ std::string report_html(const Report& report) {
     notices += fmt::format("<p class=\"notice\" role=\"note\">{}</p>\n", escaped(notice));
   const bool pair = !report.plots.empty() && !report.pictures.empty();
   std::string_view page = embedded::report_template();
-  return markup::filled(page,
-                        {{"title", escaped(report.title)},
-                         {"notices", notices},
-                         {"number", report.headline_number.empty()
-                                        ? ""
-                                        : fmt::format("<p class=\"number\">{} <small>{}</small></p>",
-                                                      escaped(report.headline_number), escaped(report.headline_unit))},
-                         {"headline", escaped(report.headline)},
-                         {"first_kind", pair ? "first pair" : "first"},
-                         {"first_plot", first_plot(report)},
-                         {"first_picture", report.pictures.empty() ? "" : markup::image(report.pictures[0])},
-                         {"plots", other_plots(report)},
-                         {"pictures", other_pictures(report)},
-                         {"tables", tables(report)},
-                         {"details", details(report)},
-                         {"made_by", made_by(report.summary)},
-                         {"data", markup::script_safe(plot_data(report))},
-                         {"summary", report.summary.is_null()
-                                         ? ""
-                                         : fmt::format("<script type=\"application/json\" id=\"summary\">{}</script>",
-                                                       markup::script_safe(pretty(report.summary)))},
-                         {"style", std::string(embedded::report_style())},
-                         {"script", std::string(embedded::report_script())},
-                         {"dygraphs_style", markup::without_source_map(embedded::dygraphs_style())},
-                         {"dygraphs_script", markup::without_source_map(embedded::dygraphs_script())},
-                         {"dygraphs_synchronizer", markup::without_source_map(embedded::dygraphs_synchronizer())}});
+  return markup::filled(
+      page,
+      {{"title", escaped(report.title)},
+       {"notices", notices},
+       {"number", report.headline_number.empty()
+                      ? ""
+                      : fmt::format("<p class=\"number\">{} <small>{}</small></p>", escaped(report.headline_number),
+                                    escaped(report.headline_unit))},
+       {"headline", escaped(report.headline)},
+       {"first_kind", pair ? "first pair" : "first"},
+       {"first_plot", first_plot(report)},
+       {"first_picture", report.pictures.empty() ? "" : markup::image(report.pictures[0])},
+       {"charts", section("Charts", "charts", chart_figures(report.charts))},
+       {"plots", other_plots(report)},
+       {"pictures", other_pictures(report)},
+       {"tables", tables(report)},
+       {"details", details(report)},
+       {"made_by", made_by(report.summary)},
+       {"credits", report.charts.empty() ? "Plots by dygraphs 2.2.1, © Dan Vanderkam and contributors, MIT licence."
+                                         : "Charts by Chart.js 3, © Chart.js contributors, MIT licence."},
+       {"chart_scripts", chart_scripts(report)},
+       {"data", markup::script_safe(plot_data(report))},
+       {"summary", report.summary.is_null()
+                       ? ""
+                       : fmt::format("<script type=\"application/json\" id=\"summary\">{}</script>",
+                                     markup::script_safe(pretty(report.summary)))},
+       {"style", std::string(embedded::report_style())},
+       {"script", std::string(embedded::report_script())},
+       {"dygraphs_style", markup::without_source_map(embedded::dygraphs_style())},
+       {"dygraphs_script", markup::without_source_map(embedded::dygraphs_script())},
+       {"dygraphs_synchronizer", markup::without_source_map(embedded::dygraphs_synchronizer())}});
 }
 
 void write_report(const Report& report, const std::filesystem::path& file) {

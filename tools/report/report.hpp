@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/report/chart.hpp"
 #include "tools/time_table.hpp"
 
 namespace heartservo::tools {
@@ -66,6 +67,7 @@ struct Report {
   std::string headline_unit;            ///< "mm RMS residual"
   std::vector<std::string> notices;     ///< what a reader must know first: "ended by Ctrl-C after 12 s of 60 s"
   std::vector<ReportPlot> plots;        ///< the first is on the first screen: residual against motion
+  std::vector<ReportChart> charts;      ///< of many runs; before everything else
   std::vector<ReportPicture> pictures;  ///< so is the first of these
   ReportVideo video;                    ///< after them
   std::vector<ReportTable> tables;

@@ -17,6 +17,8 @@
 
 namespace heartservo::tools {
 
+constexpr std::uint64_t kManyRuns = 20000;  ///< more are asked for on purpose (--yes)
+
 struct SweepAxis {
   std::string key;                  ///< "engines.predictor", "seed", "latency_ms"
   std::vector<std::string> values;  ///< as YAML

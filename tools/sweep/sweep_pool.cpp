@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -14,6 +15,8 @@
 #include <cstring>
 #include <list>
 
+#include "sim/endoscope/painted_pattern.hpp"
+#include "sim/endoscope/tool_view.hpp"
 #include "tools/servo_run.hpp"
 #include "tracking/settings/errors.hpp"
 
@@ -46,6 +49,7 @@ json carry_out(const SweepPlan& plan, std::uint64_t run) {
     request.source = plan.scene;
     request.label = "sweep";
     request.quiet = true;
+    request.pictures = false;
     const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
     const ServoOutcome outcome = run_loop(request);
     if (outcome.interrupted) return {{"status", "interrupted"}};
@@ -74,6 +78,7 @@ Child start(const SweepPlan& plan, std::uint64_t run) {
   const pid_t pid = ::fork();
   if (pid < 0) throw ConfigError(fmt::format("no process can be made: {}; take fewer --jobs", std::strerror(errno)));
   if (pid == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would take its answer, and it holds the folder's lock
     ::close(ends[0]);
     const std::string text = carry_out(plan, run).dump(-1, ' ', false, json::error_handler_t::replace);
     std::size_t sent = 0;
@@ -120,6 +125,9 @@ void run_pool(const SweepPlan& plan, const std::vector<std::uint64_t>& runs, int
     }
     children.clear();
   };
+  if (runs.empty()) return;
+  // What every run would paint anew, whatever its seed: the marker and the first landmark.
+  for (const std::uint32_t id : {sim::kMarkerPattern, 0u}) sim::pattern_picture(id);
   try {
     std::size_t next = 0;
     while (next < runs.size() || !children.empty()) {

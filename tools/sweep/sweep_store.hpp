@@ -19,11 +19,16 @@ struct SweepResult {
   std::string error;  ///< of a failed run, and why the guard stopped
 };
 
+/// The results in a file of a sweep, the last of each run; a line that is not whole is left out. Throws ConfigError
+/// when it belongs to another sweep.
+std::map<std::uint64_t, SweepResult> read_results(const std::filesystem::path& file, const SweepPlan& plan);
+
 class SweepStore {
  public:
   /// Opens or makes `folder`. `share`: 0 for the whole, else the number of the share. Throws ConfigError: another sweep
-  /// is in it, another process is writing it, it cannot be written; InputError: a line of it cannot be read.
-  SweepStore(const std::filesystem::path& folder, const SweepPlan& plan, int share);
+  /// is in it, another process is writing it (unless `wait`: then waits until that one has ended), it cannot be
+  /// written.
+  SweepStore(const std::filesystem::path& folder, const SweepPlan& plan, int share, bool wait = false);
   ~SweepStore();
   SweepStore(const SweepStore&) = delete;
   SweepStore& operator=(const SweepStore&) = delete;
@@ -33,8 +38,10 @@ class SweepStore {
   void add(const SweepResult& result);
   /// Forgets failed runs, so that they are run again.
   void forget_failed();
-  /// Takes over the results of all shares. Returns how many shares' files there were.
-  int merge();
+  /// Takes over the results of all shares: of runs that are missing here or failed here but not there.
+  void merge();
+  /// The results in the folder's other files, as they are at this moment; others may be writing them.
+  std::map<std::uint64_t, SweepResult> elsewhere() const;
 
   const std::map<std::uint64_t, SweepResult>& results() const { return results_; }
   const std::filesystem::path& folder() const { return folder_; }
@@ -42,9 +49,7 @@ class SweepStore {
   void write_sorted() const;
 
  private:
-  void read(const std::filesystem::path& file);
   std::string line_of(const SweepResult& result) const;
-  std::string header() const;
 
   std::filesystem::path folder_, file_;
   SweepPlan plan_;

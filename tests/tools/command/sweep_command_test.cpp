@@ -46,7 +46,12 @@ TEST_F(SweepCommand, RunsTheProductAndGivesTheSameInShares) {
   EXPECT_EQ(j["pairs"].size(), 1u);
   const std::string table = results("whole");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 7);
-  EXPECT_NE(read_text(folder_ / "whole/report.html").find("Pairs on the same seeds"), std::string::npos);
+  const std::string page = read_text(folder_ / "whole/report.html");
+  for (const char* part : {"Pairs on the same seeds", "<canvas id=\"chart0\"", "residual.rms_mm over the seeds"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  ASSERT_EQ(run({"report", "whole", "--out", "again.html", "--quiet"}).code, 0);
+  EXPECT_EQ(read_text(folder_ / "again.html"), read_text(folder_ / "whole/report.html"));
+  expect_refused(2, {"report", "whole", "whole"}, {"a sweep", "alone"});
   // as a run of its own gives it
   const json alone = json_of(run({"servo", scene("pig_2007"), "--frames", "30", "--settle-s", "0.1", "--predictor",
                                   "hold", "--seed", "2", "--json", "--quiet", "--no-video"}));
@@ -84,6 +89,36 @@ TEST_F(SweepCommand, AFailingRunIsRecordedAndTheRestGoesOn) {
   EXPECT_NE(read_text(folder_ / "swept/results.csv").find("the run is refused"), std::string::npos);
 }
 
+TEST_F(SweepCommand, TwoAtOnceAreRefusedOrTakeTurns) {
+  const std::string file = sweep("  seed: {from: 1, to: 8}\n");
+  Outcome refused, waited;
+  const Outcome first = run({"sweep", file, "--out", "swept", "--jobs", "1", "--quiet"}, [&](pid_t child) {
+    if (waited.code >= 0 || !fs::exists(folder_ / "swept/runs.csv")) return;
+    ::kill(child, SIGSTOP);  // it is in the middle while the second tries
+    refused = run({"sweep", file, "--out", "swept", "--quiet"});
+    waited = run({"sweep", file, "--out", "swept", "--quiet", "--wait"}, [&](pid_t) { ::kill(child, SIGCONT); });
+  });
+  EXPECT_EQ(first.code, 0) << first.err;
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("another heartservo is writing"), std::string::npos) << refused.err;
+  EXPECT_EQ(waited.code, 0) << waited.err;
+  const std::string runs = read_text(folder_ / "swept/runs.csv");
+  EXPECT_EQ(std::count(runs.begin(), runs.end(), '\n'), 9) << "each once";
+}
+
+TEST_F(SweepCommand, NoRunOutlivesASweepThatIsKilled) {
+  const std::string file = sweep("  seed: {from: 1, to: 200}\n");
+  const Outcome o = run({"sweep", file, "--out", "swept", "--quiet"}, [&](pid_t child) {
+    if (fs::exists(folder_ / "swept/runs.csv") && read_text(folder_ / "swept/runs.csv").find("\n") != std::string::npos)
+      ::kill(child, SIGKILL);
+  });
+  EXPECT_EQ(o.code, 128 + SIGKILL);
+  Outcome next;
+  for (int i = 0; i < 20 && next.code != 0; ++i)  // the runs die a moment after it
+    next = run({"sweep", file, "--out", "swept", "--merge", "--quiet"});
+  EXPECT_EQ(next.code, 0) << "the folder is free: " << next.err;
+}
+
 TEST_F(SweepCommand, BadOnesAreRefused) {
   expect_refused(3, {"sweep", "nowhere.yaml"}, {"nowhere.yaml"});
   expect_refused(2, {"sweep", sweep("  engines.predictr: [hold]\n"), "--out", "x"}, {"did you mean 'predictor'"});
@@ -97,7 +132,7 @@ TEST_F(SweepCommand, BadOnesAreRefused) {
 }
 
 TEST_F(SweepCommand, ShippedSweepsAreGood) {
-  for (const char* name : {"latency", "control", "robustness", "arrhythmia"}) {
+  for (const char* name : {"latency", "control", "robustness", "arrhythmia", "readme"}) {
     const Outcome o = run({"sweep", HEARTSERVO_SOURCE_DIR "/scenes/sweeps/" + std::string(name) + ".yaml", "--count"});
     EXPECT_EQ(o.code, 0) << o.err;
     EXPECT_GT(std::stoi(o.out), 30) << name;

@@ -111,9 +111,31 @@ TEST_F(Sweep, SharesMergeIntoTheWhole) {
       store.add({run, "done", {static_cast<double>(run)}, 1, ""});
   }
   SweepStore whole(out, p, 0);
-  EXPECT_EQ(whole.merge(), 2);
+  whole.merge();
   EXPECT_EQ(whole.results().size(), 4u);
   EXPECT_EQ(whole.results().at(3).metrics[0], 3);
+}
+
+TEST_F(Sweep, WhatAShareRepeatedWellReplacesAFailure) {
+  const SweepPlan p = plan("axes:\n  seed: {from: 1, to: 4}\nmetrics: [residual.rms_mm]\n");
+  const auto out = folder_ / "shared";
+  {
+    SweepStore share(out, p, 1);
+    share.add({0, "failed", {NAN}, 1, "crashed"});
+    share.add({2, "done", {2}, 1, ""});
+    SweepStore whole(out, p, 0);
+    whole.merge();
+    EXPECT_EQ(whole.results().at(0).status, "failed");
+    share.forget_failed();
+    EXPECT_FALSE(share.has(0));
+    share.add({0, "done", {0.5}, 1, ""});
+  }
+  SweepStore whole(out, p, 0);
+  EXPECT_EQ(whole.results().at(0).status, "failed") << "as it was merged";
+  whole.merge();
+  EXPECT_EQ(whole.results().at(0).metrics[0], 0.5);
+  SweepStore other(out, p, 2);
+  EXPECT_EQ(other.elsewhere().size(), 2u) << "with other shares their runs are not done again";
 }
 
 TEST(SweepStatistics, MediansAndTheirIntervals) {
