@@ -1,6 +1,6 @@
-// usb_camera [--jpeg FILE...] [--fault NAME FRAME]: a USB camera made of software, 640x480 at 12.5 Hz in YUYV and MJPEG,
-// that the kernel's own uvcvideo drives. Faults, once the frame of that number is reached: unplug (it ends), freeze (no
-// more data), error (a transfer fails), short (half a frame), garbage (a frame's bytes are noise).
+// usb_camera [--jpeg FILE...] [--fault NAME FRAME]: a USB camera made of software, 640x480 at 12.5 Hz in YUYV and
+// MJPEG, that the kernel's own uvcvideo drives. Faults, once the frame of that number is reached: unplug (it ends),
+// freeze (no more data), error (a transfer fails), short (half a frame), garbage (a frame's bytes are noise).
 #include <sys/types.h>
 
 #include <algorithm>
