@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <utility>
 
 namespace heartservo::sim {
 namespace {
@@ -36,6 +39,20 @@ double step(double distance) { return 0.5 * (1 + std::tanh(distance / 0.012)); }
 
 double mix(double a, double b, double t) { return a + t * (b - a); }
 
+cv::Mat paint(std::uint32_t id, int size) {
+  constexpr int kSamples = 2;
+  cv::Mat picture(size, size, CV_8UC1);
+  for (int j = 0; j < size; ++j)
+    for (int i = 0; i < size; ++i) {
+      double grey = 0;
+      for (int k = 0; k < kSamples * kSamples; ++k)
+        grey += painted_pattern(id, 2 * (i + (k % kSamples + 0.5) / kSamples) / size - 1,
+                                2 * (j + (k / kSamples + 0.5) / kSamples) / size - 1);
+      picture.at<std::uint8_t>(j, i) = cv::saturate_cast<std::uint8_t>(grey / (kSamples * kSamples));
+    }
+  return picture;
+}
+
 }  // namespace
 
 double painted_pattern(std::uint32_t id, double x, double y) {
@@ -51,17 +68,13 @@ double painted_pattern(std::uint32_t id, double x, double y) {
 }
 
 cv::Mat pattern_picture(std::uint32_t id, int size) {
-  constexpr int kSamples = 2;
-  cv::Mat picture(size, size, CV_8UC1);
-  for (int j = 0; j < size; ++j)
-    for (int i = 0; i < size; ++i) {
-      double grey = 0;
-      for (int k = 0; k < kSamples * kSamples; ++k)
-        grey += painted_pattern(id, 2 * (i + (k % kSamples + 0.5) / kSamples) / size - 1,
-                                2 * (j + (k / kSamples + 0.5) / kSamples) / size - 1);
-      picture.at<std::uint8_t>(j, i) = cv::saturate_cast<std::uint8_t>(grey / (kSamples * kSamples));
-    }
-  return picture;
+  // Painting takes a tenth of a second or more, and everyone who looks at a region asks for it.
+  static std::mutex mutex;
+  static std::map<std::pair<std::uint32_t, int>, cv::Mat> painted;
+  const std::lock_guard lock(mutex);
+  cv::Mat& picture = painted[{id, size}];
+  if (picture.empty()) picture = paint(id, size);
+  return picture.clone();
 }
 
 }  // namespace heartservo::sim
