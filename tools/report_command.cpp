@@ -1,5 +1,6 @@
 // heartservo report: one page of one run, or of several side by side.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 
@@ -52,9 +53,7 @@ void one_run(const ReportOptions& o, const StoredRun& run) {
   write_page(o, report);
 }
 
-int run_report(const ReportOptions& o) {
-  std::vector<StoredRun> runs;
-  for (const auto& folder : o.runs) runs.push_back(read_run(folder));
+int write_report_of(const ReportOptions& o, const std::vector<StoredRun>& runs) {
   for (const auto& run : runs)
     if (run.command() != runs.front().command())
       throw ConfigError(fmt::format("{} is a run of {}, but {} one of {}: they have nothing to compare",
@@ -67,6 +66,22 @@ int run_report(const ReportOptions& o) {
   const TimeTable table = together(runs, compared_columns(runs));
   write_page(o, comparison_report(runs, table));
   return DONE;
+}
+
+int run_report(const ReportOptions& o) {
+  std::vector<StoredRun> runs;
+  for (const auto& folder : o.runs) runs.push_back(read_run(folder));
+  const auto foreign = [&](const std::exception& e) {
+    return InputError(fmt::format("{}: frames.csv or summary.json is not as this version writes it ({}); run it again",
+                                  fmt::join(o.runs, ", "), e.what()));
+  };
+  try {
+    return write_report_of(o, runs);
+  } catch (const nlohmann::json::exception& e) {  // a key that is missing
+    throw foreign(e);
+  } catch (const std::logic_error& e) {  // a column that is missing
+    throw foreign(e);
+  }
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # chroot.sh BUILD [BASE]: makes the Debian package of a build, installs it in a clean Debian 12 and runs it there, as root.
-# BASE: a folder that debootstrap has filled already (it is not changed); else one is made, some 120 MB of downloads.
-# With its dependencies the package downloads some 150 MB more. It takes 45 s of processor time, and minutes of network and
+# BASE: a folder that debootstrap has filled already (it is not changed); else one is made, some 50 MB of downloads.
+# With its dependencies the package downloads some 170 MB more. It takes 45 s of processor time, and minutes of network and
 # disk: no test of ctest's. Ends with 77, and says why, where it cannot be tried.
 set -euo pipefail
 mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}

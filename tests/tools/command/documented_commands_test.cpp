@@ -166,7 +166,8 @@ TEST_P(DocumentedHelp, ItsExamplesWork) {
 
 INSTANTIATE_TEST_SUITE_P(Commands, DocumentedHelp,
                          testing::Values("heartservo", "servo", "track", "render", "scene", "calibrate", "camera",
-                                         "analyse", "beats", "stabilise", "paper", "report", "doctor", "capture"),
+                                         "analyse", "beats", "stabilise", "paper", "report", "doctor", "capture",
+                                         "texture", "predict", "sweep"),
                          [](const auto& command) { return command.param; });
 
 TEST_F(DocumentedCommands, AWrongLineIsNoticed) {
