@@ -1,5 +1,6 @@
 // heartservo report: one page of one run, of several side by side, or of a sweep.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 
@@ -53,16 +54,7 @@ void one_run(const ReportOptions& o, const StoredRun& run) {
   write_page(o, report);
 }
 
-int run_report(const ReportOptions& o) {
-  for (const auto& folder : o.runs) {
-    if (!is_sweep(folder)) continue;
-    if (o.runs.size() > 1) throw ConfigError(folder + " is a sweep, which has a page of its own: give it alone");
-    const StoredSweep sweep = read_swept(folder);
-    write_page(o, sweep_report(sweep.plan, sweep.results, sweep_summary(sweep.plan, sweep.results)));
-    return DONE;
-  }
-  std::vector<StoredRun> runs;
-  for (const auto& folder : o.runs) runs.push_back(read_run(folder));
+int write_report_of(const ReportOptions& o, const std::vector<StoredRun>& runs) {
   for (const auto& run : runs)
     if (run.command() != runs.front().command())
       throw ConfigError(fmt::format("{} is a run of {}, but {} one of {}: they have nothing to compare",
@@ -75,6 +67,29 @@ int run_report(const ReportOptions& o) {
   const TimeTable table = together(runs, compared_columns(runs));
   write_page(o, comparison_report(runs, table));
   return DONE;
+}
+
+int run_report(const ReportOptions& o) {
+  for (const auto& folder : o.runs) {
+    if (!is_sweep(folder)) continue;
+    if (o.runs.size() > 1) throw ConfigError(folder + " is a sweep, which has a page of its own: give it alone");
+    const StoredSweep sweep = read_swept(folder);
+    write_page(o, sweep_report(sweep.plan, sweep.results, sweep_summary(sweep.plan, sweep.results)));
+    return DONE;
+  }
+  std::vector<StoredRun> runs;
+  for (const auto& folder : o.runs) runs.push_back(read_run(folder));
+  const auto foreign = [&](const std::exception& e) {
+    return InputError(fmt::format("{}: frames.csv or summary.json is not as this version writes it ({}); run it again",
+                                  fmt::join(o.runs, ", "), e.what()));
+  };
+  try {
+    return write_report_of(o, runs);
+  } catch (const nlohmann::json::exception& e) {  // a key that is missing
+    throw foreign(e);
+  } catch (const std::logic_error& e) {  // a column that is missing
+    throw foreign(e);
+  }
 }
 
 }  // namespace

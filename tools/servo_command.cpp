@@ -33,7 +33,7 @@ struct ServoOptions {
   RecordedOptions recorded;
   std::string tracker, estimator, predictor, controller, robot, reference, point, sweep;
   double latency_ms = -1, settle_s = -1;
-  bool real_time = false, show = false;
+  bool real_time = false, show = false, select = false;
   bool no_video = false;
   int igtl_port = 0;
 };
@@ -84,7 +84,8 @@ ServoRequest configure(const ServoOptions& o) {
   request.quiet = o.run.quiet;
   request.igtl_port = o.igtl_port;
   request.real_time = o.real_time;
-  request.show = o.show;
+  request.show = o.show || o.select;
+  request.select = o.select;
   if (o.run.frames && !scene.is_recorded()) fit_settling(request, scene.frame_count(), scene.camera.frame_rate_hz);
   return request;
 }
@@ -131,6 +132,8 @@ int run_servo(const ServoOptions& o) {
     const bool live = tracking::v4l2::is_camera(request.scene.recording.source);  // a film would take the loop's time
     return several || live || o.no_video ? std::filesystem::path() : folder->file("video.webm");
   };
+  if (request.show && (!o.sweep.empty() || predictors.size() * controllers.size() > 1))
+    throw ConfigError("--show and --select are for one run: give one predictor and one controller, no sweep");
   if (tracking::v4l2::is_camera(request.scene.recording.source) && predictors.size() * controllers.size() > 1)
     throw ConfigError("a camera's frames come only once: give one predictor and one controller");
   if (!o.sweep.empty()) {
@@ -189,7 +192,9 @@ Command add_servo_command(CLI::App& program) {
   app->add_option("--igtl", o.igtl_port, "send target, tip and picture to OpenIGTLink clients on this port (18944)")
       ->check(CLI::Range(1, 65535))
       ->type_name("PORT");
-  app->add_flag("--show", o.show, "the picture in a window while it runs (X11)");
+  app->add_flag("--show", o.show,
+                "a window with picture, region, tip and numbers; keys: space pause, r learn anew, q end");
+  app->add_flag("--select", o.select, "the same, and the region's four corners are clicked in the first frame");
   app->add_flag("--real-time", o.real_time,
                 "on a camera: real-time scheduling where allowed, memory locked, no pictures and no progress");
   app->add_flag("--no-video", o.no_video, "no short film of the run in the report");

@@ -7,6 +7,7 @@
 
 #include "servo/motion/spectrum.hpp"
 #include "tools/servo_summary.hpp"
+#include "tools/window/selection.hpp"
 
 namespace heartservo::tools {
 
@@ -135,7 +136,8 @@ Report servo_report(const json& j, const TimeTable& table, const TimeTable& spec
   if (const int lost = j["tracking"]["lost_frames"]; lost > 0)
     report.notices.push_back(fmt::format("The region was lost in {} of {} frames.", lost, j["frames"].get<int>()));
   if (!j["stop_reason"].is_null()) report.notices.push_back("Safety stop: " + j["stop_reason"].get<std::string>());
-  if (j["interrupted"].get<bool>()) report.notices.push_back("Ended early by Ctrl-C.");
+  if (j["interrupted"].get<bool>()) report.notices.push_back("Ended early by Ctrl-C or q.");
+  if (const std::string selected = selection_notice(j); !selected.empty()) report.notices.push_back(selected);
   report.plots = metric ? metric_plots() : pixel_plots();
   if (spectrum.rows() > 0) {
     ReportPlot density{"Spectra of the motion and of what is left",

@@ -14,7 +14,6 @@
 #include "tools/album.hpp"
 #include "tools/capture/capture_summary.hpp"
 #include "tools/capture/live_timing.hpp"
-#include "tools/capture/outline.hpp"
 #include "tools/capture/real_time.hpp"
 #include "tools/command.hpp"
 #include "tools/igtl/igtl_stream.hpp"
@@ -23,8 +22,11 @@
 #include "tools/overlay.hpp"
 #include "tools/progress.hpp"
 #include "tools/servo_summary.hpp"
+#include "tools/servo_view.hpp"
 #include "tools/short_video.hpp"
+#include "tools/window/selection.hpp"
 #include "tracking/frames/live_source.hpp"
+#include "tracking/frames/peeked_source.hpp"
 #include "tracking/settings/errors.hpp"
 
 namespace heartservo::tools {
@@ -71,12 +73,36 @@ void publish(IgtlStream& stream, const servo::LoopRecord& r) {
   stream.publish(snapshot);
 }
 
-// The picture has the tool in it already.
-void show(Window& window, const servo::LoopRecord& record) {
-  if (record.frame.grey.empty()) return;
-  std::vector<Window::Outline> outlines;
-  for (const auto* track : {&record.track, &record.marker_track}) add_outline(*track, outlines);
-  window.show(record.frame.grey, outlines);
+using Recording = std::unique_ptr<tracking::FrameSource>;
+
+// Selects the region of a recording before anything is made for it: the virtual tool begins beside the region.
+tracking::Quad select_in(Recording& opened, std::optional<LiveWindow>& window, ServoRequest& request) {
+  auto source = std::make_unique<tracking::PeekedSource>(sim::open_recording(request.scene));
+  window.emplace("heartservo: " + request.source, source->size(), !source->live());
+  const tracking::Quad region = selected_region(*window, source->first(), request.source);
+  Eigen::AlignedBox2d box;
+  for (const auto& corner : region) box.extend(corner);
+  request.scene.recording.roi = {box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()};
+  opened = std::move(source);
+  return region;
+}
+
+// Shows the frame and does what keys and mouse ask for; true: the run is to end.
+bool attend(LiveWindow& window, WindowView view, servo::Loop& loop, const servo::LoopRecord& record,
+            const std::function<servo::LoopStages()>& fresh, const LiveWindow::Stop& stop, nlohmann::json& selections) {
+  for (;;) {
+    window.show(view);
+    const WindowState::Asked asked = window.attend(stop);
+    if (asked.quit || !(asked.relearn || asked.region)) return asked.quit;
+    const tracking::Quad region = asked.region ? *asked.region : record.track.corners;
+    if (const std::string why = loop.restart(fresh(), region); !why.empty()) {
+      view.lines.back() = "Not learnt: " + why;
+      continue;
+    }
+    note_selection(selections, record.frame, region);
+    view.regions.front().track.corners = region;
+    view.regions.front().track.state = tracking::TrackState::OK;
+  }
 }
 
 }  // namespace
@@ -97,15 +123,21 @@ void fit_settling(ServoRequest& request, std::size_t frames, double frame_rate_h
 ServoOutcome run_loop(ServoRequest request) {
   sim::Scene& scene = request.scene;
   const RealTime real_time(request.real_time);  // before the table: a camera's thread inherits it
-  const auto table = sim::make_table(scene);
+  std::optional<LiveWindow> window;
+  std::optional<tracking::Quad> selected;
+  Recording opened;
+  if (request.select && scene.is_recorded()) selected = select_in(opened, window, request);
+  const auto table = sim::make_table(scene, std::move(opened));
   tracking::LiveSource* live = table->frames().live();
   if (request.real_time && !live) throw ConfigError("--real-time is for a camera: servo v4l2:/dev/video0");
   const servo::LoopOptions loop_options = sim::loop_options(scene, *table);
   refuse_hopeless(loop_options, scene, table->robot());
   servo::LoopStages stages = sim::make_stages(scene, *table);
-  tracking::TargetTracker& tracker = *stages.target_tracker;  // for the pictures; the loop owns it
   servo::Loop loop(table->frames(), table->robot(), std::move(stages), loop_options, table->marker_to_tip(), now_s);
-  const auto picked = table->picked();
+  auto picked = table->picked();
+  if (request.show && !window) window.emplace("heartservo: " + request.source, table->frames().size(), !live);
+  if (request.select && !selected) selected = selected_region(*window, loop.first_frame(), request.source);
+  if (selected) picked.target = *selected;
   if (const std::string why = loop.start(picked.target, picked.marker); !why.empty())
     throw ConfigError(fmt::format("{}: the region cannot be tracked: {}", request.source, why));
 
@@ -122,9 +154,11 @@ ServoOutcome run_loop(ServoRequest request) {
   std::optional<ShortVideo> video;
   std::optional<IgtlStream> igtl;
   if (request.igtl_port > 0) igtl.emplace(request.igtl_port);
-  std::optional<Window> window;
-  if (request.show) window.emplace("heartservo: " + request.source, table->frames().size());
+  const double latency_s = loop_options.latency.total_s();
   ServoRunFacts facts;
+  json selections = json::array();
+  if (selected) note_selection(selections, *loop.first_frame(), *selected);
+  const std::size_t at_start = selections.size();
   double looped_s = 0;  // in the loop itself: not what is made for people to look at
   {
     const Interrupt interrupt;
@@ -142,18 +176,27 @@ ServoOutcome run_loop(ServoRequest request) {
       score.add(record, truth);
       append(outcome.frames, record, truth);
       if (live) live_timing.add(record, now_s());
-      if (window) show(*window, record);
-      if (request.real_time || !request.pictures) continue;
-      const double off_px = record.frame.time_s < scene.settle_s ? NAN : (truth.tip_px - truth.goal_px).norm();
-      if (record.frame.status == tracking::FrameStatus::OK)
-        album.look_at({outcome.frames.rows() - 1, record.frame.time_s, off_px, "",
-                       record.track.state == tracking::TrackState::LOST},
-                      [&] { return overlay(record, truth, tracker); });
-      if (!film.empty() && !video)
-        video.emplace(film, scene.settle_s, loop_options.frame_rate_hz, picked.target, record.frame.grey.size());
-      if (video && video->wants(record.frame))
-        video->add(record.frame, overlay(record, truth, tracker).bgr, tracker, record.track);
-      progress.update(outcome.frames.rows());
+      if (!request.real_time && request.pictures) {
+        const double off_px = record.frame.time_s < scene.settle_s ? NAN : (truth.tip_px - truth.goal_px).norm();
+        if (record.frame.status == tracking::FrameStatus::OK)
+          album.look_at({outcome.frames.rows() - 1, record.frame.time_s, off_px, "",
+                         record.track.state == tracking::TrackState::LOST},
+                        [&] { return overlay(record, truth, loop.target_tracker()); });
+        const bool same_region = selections.size() == at_start;  // the still view is that of one
+        if (!film.empty() && !video && same_region)
+          video.emplace(film, scene.settle_s, loop_options.frame_rate_hz, picked.target, record.frame.grey.size());
+        if (video && same_region && video->wants(record.frame))
+          video->add(record.frame, overlay(record, truth, loop.target_tracker()).bgr, loop.target_tracker(),
+                     record.track);
+        progress.update(outcome.frames.rows());
+      }
+      if (window &&
+          attend(
+              *window, servo_view(record, truth, table->camera(), table->reference(), latency_s), loop, record,
+              [&] { return sim::make_stages(scene, *table); }, [&] { return interrupt.requested(); }, selections)) {
+        facts.interrupted = true;
+        break;
+      }
     }
   }
   facts.scene = is_scene(request.source) ? stem_of(request.source) : request.source;
@@ -171,6 +214,7 @@ ServoOutcome run_loop(ServoRequest request) {
     outcome.summary["live"]["real_time"] = real_time.granted();
     outcome.device_failure = live->failure();
   }
+  if (!selections.empty()) outcome.summary["selections"] = selections;
   if (video) outcome.summary["still_view"] = video->finish();
   if (video && !outcome.summary["still_view"].is_null())
     outcome.video = {film_caption(outcome.summary["still_view"]), film};

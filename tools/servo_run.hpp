@@ -21,6 +21,7 @@ struct ServoRequest {
   int igtl_port = 0;       ///< poses and pictures go out on this port, see igtl_stream.hpp; 0: they do not
   bool show = false;       ///< the picture in a window while it runs
   bool pictures = true;    ///< for the report
+  bool select = false;     ///< the region is selected there, in the first frame; needs show
   bool real_time = false;  ///< see real_time.hpp; the pictures of the report are left out
   /// Called when nothing stands against the run any more. Returns where a short film of it goes; empty: none is made.
   std::function<std::filesystem::path()> before_run;

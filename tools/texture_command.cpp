@@ -73,6 +73,9 @@ Command add_texture_command(CLI::App& program) {
   TextureCommandOptions& o = *options;
   CLI::App* app = program.add_subcommand("texture", "texture vector of regions; selection of its features");
   app->require_subcommand(1);
+  app->footer(
+      "Examples:\n  heartservo texture describe frames/ --roi 212,130,50,50\n"
+      "  heartservo texture select --simulated");
 
   CLI::App* describe = app->add_subcommand("describe", "the paper's eight features of regions, or all of them");
   describe->add_option("source", o.describe.source, "image folder, printf pattern, picture, video or scene (.yaml)");

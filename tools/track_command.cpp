@@ -1,6 +1,5 @@
 // heartservo track: follows a region with one or several trackers side by side.
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,7 +10,6 @@
 #include "sim/table/table.hpp"
 #include "tools/artificial.hpp"
 #include "tools/capture/capture_summary.hpp"
-#include "tools/capture/outline.hpp"
 #include "tools/command.hpp"
 #include "tools/corner_truth.hpp"
 #include "tools/depth_rail.hpp"
@@ -25,7 +23,9 @@
 #include "tools/track_run.hpp"
 #include "tools/track_tables.hpp"
 #include "tools/track_truth.hpp"
+#include "tools/track_view.hpp"
 #include "tools/trajectory.hpp"
+#include "tools/window/selection.hpp"
 #include "tracking/frames/picture_file.hpp"
 #include "tracking/landmark/registry.hpp"
 #include "tracking/landmark/square_refinement.hpp"
@@ -45,7 +45,8 @@ struct TrackOptions {
   double square_mm = 0;
   std::string truth, points, point;
   std::string estimator, landmark;
-  bool show = false;
+  bool show = false, select = false;
+  int igtl_port = 0;
 };
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -244,25 +245,19 @@ std::optional<sim::Scene> depth_rail_of(const TrackOptions& o) {
   return scene;
 }
 
-// Lanes lie region by region. Regions go to as many cores as there are; trackers that are compared on one region come
-// one after the other, so that they do not take each other's time. ViSP's are not made for threads.
-void follow(const tracking::Frame& frame, const std::vector<TrackTruth>& truths, bool threaded,
-            std::vector<TrackLane>& lanes) {
-  const std::size_t regions = truths.size(), of_region = lanes.size() / regions;
-  const auto follow_region = [&](std::size_t region) {
-    for (std::size_t i = region * of_region; i < (region + 1) * of_region; ++i)
-      lanes[i].follow(frame, truths[region], now_s);
-  };
-  if (regions > 1 && threaded)
-    tbb::parallel_for(std::size_t{0}, regions, follow_region);
-  else
-    for (std::size_t region = 0; region < regions; ++region) follow_region(region);
-}
-
-void show(Window& window, const tracking::Frame& frame, const std::vector<TrackLane>& lanes) {
-  std::vector<Window::Outline> outlines;
-  for (const auto& lane : lanes) add_outline(lane.track(), outlines);
-  window.show(frame.grey, outlines);
+// The first region anew, in all its lanes.
+std::string relearn(const TrackOptions& o, const Tracked& tracked, const tracking::Camera& lens,
+                    const tracking::Frame& frame, const tracking::Quad& region, std::vector<TrackLane>& lanes) {
+  const auto names = chosen_trackers(o, tracked.scene);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    TrackStart start = lanes[i].began();
+    start.region = region;
+    start.point = start.centre = region_centre(region, lens);
+    std::string why = lanes[i].restart(tracking::trackers().make(names[i], lens, tracked.scene.tracking),
+                                       estimator_for(o, tracked, 0), frame, start);
+    if (!why.empty()) return why;
+  }
+  return "";
 }
 
 int run_track(TrackOptions o) {
@@ -282,6 +277,14 @@ int run_track(TrackOptions o) {
   const tracking::Camera lens = calibrated ? tracked.table->camera() : tracking::Camera{};
   tracking::Frame frame;
   if (!frames.next(frame)) throw InputError(o.run.source + ": there is no frame");
+  TrackView view(o.show || o.select, o.igtl_port, o.run.source, frames);
+  nlohmann::json selections = nlohmann::json::array();
+  if (o.select) {
+    const tracking::Quad region = selected_region(*view.window(), &frame, o.run.source);
+    o.corners.clear();
+    for (const auto& corner : region) o.corners.insert(o.corners.end(), {corner.x(), corner.y()});
+    note_selection(selections, frame, region);
+  }
   const std::size_t regions = region_count(o, tracked);
   if (regions > 1 && (truth || !tracked.points.empty()))
     throw ConfigError("--truth and --points score one region; give one --roi or --corners");
@@ -296,8 +299,6 @@ int run_track(TrackOptions o) {
   }
   const TruthSource& source = sources.front();
 
-  std::optional<Window> window;
-  if (o.show) window.emplace("heartservo: " + o.run.source, frames.size());
   RunFolder folder(run_path(o.run, "track"));
   const std::size_t expected = frames.frame_count().value_or(0);
   TrackAlbum album(expected, source.kind, frame);
@@ -309,18 +310,21 @@ int run_track(TrackOptions o) {
     Progress progress("track " + stem_of(o.run.source), expected, o.run.quiet);
     do {
       for (std::size_t i = 0; i < regions; ++i) truths[i] = sources[i].at(frame);
-      follow(frame, truths, threaded, lanes);
+      follow_all(frame, truths, threaded, now_s, lanes);
       const TrackTruth& known = truths.front();
       with_truth += known.corners.has_value() || known.point.allFinite();
       album.look_at(frame, lanes, known);
-      if (window) show(*window, frame, lanes);
       progress.update(++count);
-    } while (!(interrupted = interrupt.requested()) && frames.next(frame));
+      interrupted = view.attend(
+          frame, lanes, selections, [&] { return interrupt.requested(); },
+          [&](const tracking::Quad& region) { return relearn(o, tracked, lens, frame, region, lanes); });
+    } while (!(interrupted |= interrupt.requested()) && frames.next(frame));
   }
 
   nlohmann::json summary{{"command", "track"}, {"version", HEARTSERVO_VERSION}, {"source", o.run.source},
                          {"frames", count},    {"interrupted", interrupted},    {"reference", nullptr},
                          {"point", nullptr}};
+  if (!selections.empty()) summary["selections"] = selections;
   if (!source.reference.empty()) summary["reference"] = source.reference;
   if (source.kind.point) summary["point"] = *source.kind.point;
   for (const auto& lane : lanes) summary["trackers"].push_back(lane.summary());
@@ -372,7 +376,11 @@ Command add_track_command(CLI::App& program) {
       ->type_name("FILE");
   app->add_option("--point", o.point, "which of them; default: the one inside the region nearest to its centre")
       ->type_name("NAME");
-  app->add_flag("--show", o.show, "the picture in a window while it runs (X11)");
+  app->add_flag("--show", o.show, "a window with picture, region and numbers; keys: space pause, r learn anew, q end");
+  app->add_flag("--select", o.select, "the same, and the region's four corners are clicked in the first frame");
+  app->add_option("--igtl", o.igtl_port, "send target (with a metric pose) and picture to OpenIGTLink clients (18944)")
+      ->check(CLI::Range(1, 65535))
+      ->type_name("PORT");
   app->add_flag("--list", o.run.list, "list the trackers and exit");
   app->footer(
       "Examples:\n  heartservo track frames/ --roi 150,130,60,60\n"

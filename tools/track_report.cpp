@@ -6,6 +6,7 @@
 
 #include "tools/servo_summary.hpp"
 #include "tools/track_tables.hpp"
+#include "tools/window/selection.hpp"
 
 namespace heartservo::tools {
 
@@ -53,7 +54,8 @@ void answer(Report& report, const json& summary) {
     report.headline_number = std::to_string(lost);
     report.headline_unit = "lost frames";
   }
-  if (summary["interrupted"].get<bool>()) report.notices.emplace_back("Ended early by Ctrl-C.");
+  if (summary["interrupted"].get<bool>()) report.notices.emplace_back("Ended early by Ctrl-C or q.");
+  if (const std::string selected = selection_notice(summary); !selected.empty()) report.notices.push_back(selected);
   for (const json& lane : lanes)
     if (lane["wrong_ok_frames"].is_number() && lane["wrong_ok_frames"] > 0)
       report.notices.push_back(fmt::format("{} called {} frame{} OK in which it was wrong.",

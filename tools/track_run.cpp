@@ -1,6 +1,7 @@
 #include "tools/track_run.hpp"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -71,6 +72,17 @@ std::string TrackLane::start(const tracking::Frame& frame, const TrackStart& sta
   return tracker_->start(frame, start.region);
 }
 
+std::string TrackLane::restart(std::unique_ptr<tracking::TargetTracker> tracker,
+                               std::unique_ptr<tracking::TargetEstimator> estimator, const tracking::Frame& frame,
+                               const TrackStart& start) {
+  if (frame.status != tracking::FrameStatus::OK) return "this frame shows nothing to learn";
+  if (std::string why = tracker->start(frame, start.region); !why.empty()) return why;
+  tracker_ = std::move(tracker);
+  estimator_ = std::move(estimator);
+  start_ = start;
+  return "";
+}
+
 const tracking::Track& TrackLane::follow(const tracking::Frame& frame, const TrackTruth& truth, double (*now_s)()) {
   const double age = live_ ? live_->now_s() - frame.time_s : NAN, begin = now_s();
   track_ = tracker_->track(frame);
@@ -108,7 +120,8 @@ const tracking::Track& TrackLane::follow(const tracking::Frame& frame, const Tra
 
 void TrackLane::measure(const tracking::Frame& frame, const TrackTruth& truth) {
   estimator_->look_at(frame);
-  const auto state = estimator_->estimate(track_);
+  state_ = estimator_->estimate(track_);
+  const auto& state = state_;
   const bool known = state.state != TrackState::LOST;
   const Eigen::Vector3d p = state.T_camera_target.translation();
   const Eigen::Quaterniond q(state.T_camera_target.linear());
@@ -138,6 +151,19 @@ json TrackLane::summary() const {
     j["position_error_mm"]["normalised_z"] = normalised_ / static_cast<double>(errors_m_[0].size());
   j["displacement_px"] = {{"x", extent(u_px_)}, {"y", extent(v_px_)}};
   return j;
+}
+
+void follow_all(const tracking::Frame& frame, const std::vector<TrackTruth>& truths, bool threaded, double (*now_s)(),
+                std::vector<TrackLane>& lanes) {
+  const std::size_t regions = truths.size(), of_region = lanes.size() / regions;
+  const auto follow_region = [&](std::size_t region) {
+    for (std::size_t i = region * of_region; i < (region + 1) * of_region; ++i)
+      lanes[i].follow(frame, truths[region], now_s);
+  };
+  if (regions > 1 && threaded)
+    tbb::parallel_for(std::size_t{0}, regions, follow_region);
+  else
+    for (std::size_t region = 0; region < regions; ++region) follow_region(region);
 }
 
 }  // namespace heartservo::tools

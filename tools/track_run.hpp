@@ -34,11 +34,20 @@ class TrackLane {
   /// "" or the reason for which the tracker refuses the region.
   std::string start(const tracking::Frame& frame, const TrackStart& start);
 
+  /// The region anew, or another one, with a new tracker and estimator (null as in the constructor). "" or the reason
+  /// for which it is refused: then all stays as it was.
+  std::string restart(std::unique_ptr<tracking::TargetTracker> tracker,
+                      std::unique_ptr<tracking::TargetEstimator> estimator, const tracking::Frame& frame,
+                      const TrackStart& start);
+
   /// Follows one frame. The result stays until the next call.
   const tracking::Track& follow(const tracking::Frame& frame, const TrackTruth& truth, double (*now_s)());
   const tracking::Track& track() const { return track_; }
   const TrackScore::Errors& errors() const { return errors_; }
   const TrackStart& began() const { return start_; }
+  /// Of the last frame; LOST where no metric pose is known.
+  const tracking::TargetState& state() const { return state_; }
+  double last_ms() const { return ms_.empty() ? 0 : ms_.back(); }
 
   /// See TargetTracker: call it before the frame's pixels go away.
   void mark_left_out(cv::Mat& mask) { tracker_->mark_left_out(mask); }
@@ -70,11 +79,17 @@ class TrackLane {
   TrackScore score_;
   TrackStart start_;
   tracking::Track track_;
+  tracking::TargetState state_;
   TrackScore::Errors errors_;
   Eigen::Vector2d point_ = Eigen::Vector2d::Constant(NAN);
   std::vector<double> row_, ms_, u_px_, v_px_;
   std::array<std::vector<double>, 3> errors_m_;
   double normalised_ = 0;
 };
+
+/// Follows one frame in all lanes, which lie region by region. Regions go to as many cores as there are if `threaded`;
+/// trackers that are compared on one region come one after the other, so that they do not take each other's time.
+void follow_all(const tracking::Frame& frame, const std::vector<TrackTruth>& truths, bool threaded, double (*now_s)(),
+                std::vector<TrackLane>& lanes);
 
 }  // namespace heartservo::tools

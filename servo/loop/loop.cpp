@@ -29,15 +29,37 @@ Loop::Loop(tracking::FrameSource& frames, ToolRobot& robot, LoopStages stages, c
       guard_(options.guard),
       stopwatch_(std::move(stopwatch)) {}
 
+const tracking::Frame* Loop::first_frame() {
+  if (!any_frame_) any_frame_ = frames_.next(frame_);
+  return any_frame_ ? &frame_ : nullptr;
+}
+
+tracking::Quad Loop::refined(const std::function<tracking::Quad(const tracking::Frame&, const tracking::Quad&)>& refine,
+                             const tracking::Quad& picked) const {
+  return refine && frame_.status == tracking::FrameStatus::OK ? refine(frame_, picked) : picked;
+}
+
 std::string Loop::start(const tracking::Quad& target_region, const tracking::Quad& marker_region) {
-  if (!frames_.next(frame_)) return "there is no frame";
-  const auto refined = [&](const auto& refine, const tracking::Quad& picked) {
-    return refine && frame_.status == tracking::FrameStatus::OK ? refine(frame_, picked) : picked;
-  };
+  if (!first_frame()) return "there is no frame";
   std::string why = stages_.target_tracker->start(frame_, refined(stages_.refine_target, target_region));
   if (!why.empty() || !stages_.marker_tracker) return why;
   why = stages_.marker_tracker->start(frame_, refined(stages_.refine_marker, marker_region));
   return why.empty() ? "" : "tool marker: " + why;
+}
+
+std::string Loop::restart(LoopStages fresh, const tracking::Quad& region) {
+  if (frame_.status != tracking::FrameStatus::OK) return "this frame shows nothing to learn";
+  std::string why = fresh.target_tracker->start(frame_, refined(fresh.refine_target, region));
+  if (!why.empty()) return why;
+  stages_.target_tracker = std::move(fresh.target_tracker);
+  stages_.target_estimator = std::move(fresh.target_estimator);
+  stages_.predictor = std::move(fresh.predictor);
+  stages_.refine_target = std::move(fresh.refine_target);
+  seen_goals_.setEmpty();
+  ever_seen_ = false;
+  watchdog_.forget_target();
+  supervisor_.lose(frame_.time_s);
+  return "";
 }
 
 bool Loop::step(LoopRecord& record) {

@@ -45,8 +45,18 @@ class Loop {
   Loop(tracking::FrameSource& frames, ToolRobot& robot, LoopStages stages, const LoopOptions& options,
        const Eigen::Vector3d& marker_to_tip_camera, std::function<double()> stopwatch);
 
-  /// Reads the first frame and shows the trackers their regions. "" or the reason why they refuse.
+  /// The first frame, for someone to pick the regions in; null where there is none.
+  const tracking::Frame* first_frame();
+
+  /// Shows the trackers their regions in the first frame. "" or the reason why they refuse.
   std::string start(const tracking::Quad& target_region, const tracking::Quad& marker_region);
+
+  /// Follows this region of the frame of the last step instead, with a new tracker, estimator and predictor; the other
+  /// stages stay. The tool holds until the target is known, and then approaches it slowly, as after a loss. "" or the
+  /// reason for which the region is refused: then all stays as it was.
+  std::string restart(LoopStages fresh, const tracking::Quad& region);
+
+  tracking::TargetTracker& target_tracker() { return *stages_.target_tracker; }
 
   /// One frame; false at the end of the frames or when the guard stopped the loop (see stop_reason()).
   bool step(LoopRecord& record);
@@ -55,6 +65,8 @@ class Loop {
   const std::string& stop_reason() const { return stop_reason_; }
 
  private:
+  tracking::Quad refined(const std::function<tracking::Quad(const tracking::Frame&, const tracking::Quad&)>& refine,
+                         const tracking::Quad& picked) const;
   void perceive(LoopRecord& record);
   void decide(LoopRecord& record);
   Eigen::Vector3d tip_of(const LoopRecord& record);
@@ -86,7 +98,7 @@ class Loop {
   Eigen::Vector3d encoders_start_ = Eigen::Vector3d::Zero();           // camera frame, m; eye-in-hand
   Eigen::Vector3d view_ = Eigen::Vector3d::Constant(NAN);              // the place held in the picture; eye-in-hand
   Eigen::Vector3d last_velocity_ = Eigen::Vector3d::Zero();  // camera frame
-  bool first_ = true, ever_seen_ = false;
+  bool any_frame_ = false, first_ = true, ever_seen_ = false;
   std::string stop_reason_;
 };
 

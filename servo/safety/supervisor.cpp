@@ -49,4 +49,10 @@ void Supervisor::arrived() {
   if (mode_ == LoopMode::RESUME) mode_ = LoopMode::FOLLOW;
 }
 
+void Supervisor::lose(double time_s) {
+  seen_in_a_row_ = 0;
+  approaching_ = false;
+  if (ever_followed_) enter(LoopMode::HOLD, time_s);
+}
+
 }  // namespace heartservo::servo

@@ -26,6 +26,9 @@ class Supervisor {
   /// Call it when the approach of RESUME has come to its end.
   void arrived();
 
+  /// The target is another one now, which has not been seen yet: HOLD.
+  void lose(double time_s);
+
   LoopMode mode() const { return mode_; }
   /// When the present mode began, s.
   double since_s() const { return since_s_; }

@@ -30,6 +30,9 @@ class Watchdog {
     return target.allFinite() && !jumped;
   }
 
+  /// Another target from now on.
+  void forget_target() { any_target_ = false; }
+
   /// "" or why the loop must end.
   std::string computing_time(double chain_s) {
     slow_ = options_.max_chain_s > 0 && chain_s > options_.max_chain_s ? slow_ + 1 : 0;

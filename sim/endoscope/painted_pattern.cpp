@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <utility>
 
 namespace heartservo::sim {
 namespace {
@@ -38,23 +39,7 @@ double step(double distance) { return 0.5 * (1 + std::tanh(distance / 0.012)); }
 
 double mix(double a, double b, double t) { return a + t * (b - a); }
 
-}  // namespace
-
-double painted_pattern(std::uint32_t id, double x, double y) {
-  const double rim = std::max(std::abs(x), std::abs(y));
-  const double value = 0.9 * turned(3 * id + 1, x, y, 3.3, 0.41) + 0.75 * turned(3 * id + 2, x, y, 7.9, 1.13) +
-                       0.5 * turned(3 * id + 3, x, y, 14.7, 2.02);
-  // Three paints: dark, middle, light, mixed with the continuous value so that no area is flat.
-  const double pressed = std::tanh(7 * (value - 0.28)) + std::tanh(7 * (value + 0.28));
-  const double paint = std::clamp(105 + 18 * pressed + 62 * value, 12.0, 200.0);
-  // Soft edges, wider than a texel: a hard one would snap to the texture's grid.
-  const double framed = mix(paint, 25, step(rim - 0.7));
-  return mix(framed, 195, step(rim - kFrameEdge));
-}
-
-namespace {
-
-cv::Mat painted_picture(std::uint32_t id, int size) {
+cv::Mat paint(std::uint32_t id, int size) {
   constexpr int kSamples = 2;
   cv::Mat picture(size, size, CV_8UC1);
   for (int j = 0; j < size; ++j)
@@ -70,13 +55,26 @@ cv::Mat painted_picture(std::uint32_t id, int size) {
 
 }  // namespace
 
+double painted_pattern(std::uint32_t id, double x, double y) {
+  const double rim = std::max(std::abs(x), std::abs(y));
+  const double value = 0.9 * turned(3 * id + 1, x, y, 3.3, 0.41) + 0.75 * turned(3 * id + 2, x, y, 7.9, 1.13) +
+                       0.5 * turned(3 * id + 3, x, y, 14.7, 2.02);
+  // Three paints: dark, middle, light, mixed with the continuous value so that no area is flat.
+  const double pressed = std::tanh(7 * (value - 0.28)) + std::tanh(7 * (value + 0.28));
+  const double paint = std::clamp(105 + 18 * pressed + 62 * value, 12.0, 200.0);
+  // Soft edges, wider than a texel: a hard one would snap to the texture's grid.
+  const double framed = mix(paint, 25, step(rim - 0.7));
+  return mix(framed, 195, step(rim - kFrameEdge));
+}
+
 cv::Mat pattern_picture(std::uint32_t id, int size) {
+  // Painting takes a tenth of a second or more, and everyone who looks at a region asks for it.
   static std::mutex mutex;
   static std::map<std::pair<std::uint32_t, int>, cv::Mat> painted;
   const std::lock_guard lock(mutex);
   cv::Mat& picture = painted[{id, size}];
-  if (picture.empty()) picture = painted_picture(id, size);
-  return picture.clone();  // a caller may paint on it
+  if (picture.empty()) picture = paint(id, size);
+  return picture.clone();
 }
 
 }  // namespace heartservo::sim

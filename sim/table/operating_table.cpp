@@ -267,8 +267,8 @@ class OperatingTable final : public Table, private tracking::FrameSource {
 
 std::unique_ptr<Table> make_operating_table(const Scene& scene) { return std::make_unique<OperatingTable>(scene); }
 
-std::unique_ptr<Table> make_table(const Scene& scene) {
-  return scene.is_recorded() ? make_recorded_table(scene) : make_operating_table(scene);
+std::unique_ptr<Table> make_table(const Scene& scene, std::unique_ptr<tracking::FrameSource> opened) {
+  return scene.is_recorded() ? make_recorded_table(scene, std::move(opened)) : make_operating_table(scene);
 }
 
 }  // namespace heartservo::sim

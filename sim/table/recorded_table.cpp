@@ -24,9 +24,9 @@ constexpr double kClearance = 1.25;  // the tip stays this much outside the regi
 
 class RecordedTable final : public Table, private tracking::FrameSource {
  public:
-  explicit RecordedTable(const Scene& scene)
+  RecordedTable(const Scene& scene, std::unique_ptr<tracking::FrameSource> opened)
       : scene_(scene),
-        source_(open_views(scene)),
+        source_(both_views(scene, opened ? std::move(opened) : open_recording(scene))),
         camera_(camera_of(scene, source_->size().width, source_->size().height)),
         stereo_(stereo_of(scene)),
         region_(picked_region()),
@@ -116,11 +116,11 @@ class RecordedTable final : public Table, private tracking::FrameSource {
       reference_->goal_from_point_px += tracking::centre(region_) - reference_->point.at(0, 0);
   }
 
-  static std::unique_ptr<tracking::FrameSource> open_views(const Scene& scene) {
-    const double rate_hz = scene.camera.frame_rate_hz;
-    auto left = tracking::open_source(resolve(scene, scene.recording.source), rate_hz);
+  static std::unique_ptr<tracking::FrameSource> both_views(const Scene& scene,
+                                                           std::unique_ptr<tracking::FrameSource> left) {
     if (scene.recording.right.empty()) return left;
-    return tracking::pair_views(std::move(left), tracking::open_source(resolve(scene, scene.recording.right), rate_hz));
+    return tracking::pair_views(
+        std::move(left), tracking::open_source(resolve(scene, scene.recording.right), scene.camera.frame_rate_hz));
   }
   static std::optional<tracking::StereoCamera> stereo_of(const Scene& scene) {
     if (scene.recording.right.empty()) return std::nullopt;
@@ -180,6 +180,12 @@ class RecordedTable final : public Table, private tracking::FrameSource {
 
 }  // namespace
 
-std::unique_ptr<Table> make_recorded_table(const Scene& scene) { return std::make_unique<RecordedTable>(scene); }
+std::unique_ptr<tracking::FrameSource> open_recording(const Scene& scene) {
+  return tracking::open_source(resolve(scene, scene.recording.source), scene.camera.frame_rate_hz);
+}
+
+std::unique_ptr<Table> make_recorded_table(const Scene& scene, std::unique_ptr<tracking::FrameSource> opened) {
+  return std::make_unique<RecordedTable>(scene, std::move(opened));
+}
 
 }  // namespace heartservo::sim

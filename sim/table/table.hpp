@@ -61,10 +61,14 @@ class Table {
   virtual std::string reference_point() const { return ""; }  ///< the point of that file; "" where it names none
 };
 
-/// The simulated heart, or the recorded sequence that the scene names. Throws InputError, ConfigError.
-std::unique_ptr<Table> make_table(const Scene& scene);
+/// The simulated heart, or the recorded sequence that the scene names. `opened`: that sequence, where it is open
+/// already. Throws InputError, ConfigError.
+std::unique_ptr<Table> make_table(const Scene& scene, std::unique_ptr<tracking::FrameSource> opened = nullptr);
 
 std::unique_ptr<Table> make_operating_table(const Scene& scene);
-std::unique_ptr<Table> make_recorded_table(const Scene& scene);
+std::unique_ptr<Table> make_recorded_table(const Scene& scene, std::unique_ptr<tracking::FrameSource> opened = nullptr);
+
+/// The left view of the sequence that the scene names. Throws InputError; of a camera DeviceError.
+std::unique_ptr<tracking::FrameSource> open_recording(const Scene& scene);
 
 }  // namespace heartservo::sim

@@ -44,6 +44,44 @@ TEST(LoopSafety, ALostTargetIsCoastedHeldRetractedFromAndApproachedAgain) {
   EXPECT_NEAR(fastest, 0.05, 0.003);
 }
 
+TEST(LoopSafety, AnotherRegionIsHeldForAndThenApproachedSlowly) {
+  FakeBench bench(200);
+  bench.options.guard.resume_frames = 6;
+  bench.options.guard.approach_speed = 0.05;
+  const auto other = [](const std::string& refusal) {
+    LoopStages stages;
+    auto tracker = std::make_unique<test::FakeTracker>();
+    tracker->refusal = refusal;
+    stages.target_tracker = std::move(tracker);
+    auto eye = std::make_unique<test::FakeEstimator>();
+    eye->offset_after_s = 0;
+    eye->offset = {0, 0.003, 0};
+    stages.target_estimator = std::move(eye);
+    stages.predictor = predictors().make("constant_velocity", PredictorOptions{});
+    return stages;
+  };
+  bench.after_step = [&](const LoopRecord& record) {
+    const auto sequence = record.frame.sequence;
+    if (sequence != 20 && sequence != 49) return;
+    const std::string refusal = sequence == 20 ? "too small" : "";
+    EXPECT_EQ(bench.loop->restart(other(refusal), tracking::rectangle(0, 0, 1, 1)), refusal);
+  };
+  bench.run();
+  const auto mode = [&](std::size_t k) { return bench.records[k].mode; };
+  for (std::size_t k = 21; k < 50; ++k) EXPECT_EQ(mode(k), LoopMode::FOLLOW) << k << ": a refusal changes nothing";
+  for (std::size_t k = 50; k < 55; ++k) EXPECT_EQ(mode(k), LoopMode::HOLD) << k;
+  EXPECT_EQ(mode(55), LoopMode::RESUME) << "seen six times";
+  EXPECT_EQ(mode(199), LoopMode::FOLLOW);
+  EXPECT_NEAR(bench.records[60].carried.y(), 0.003, 1e-9);
+  double fastest = 0;
+  for (std::size_t k = 50; k < 200; ++k) EXPECT_FALSE(bench.records[k].implausible) << "it may be anywhere";
+  for (std::size_t k = 55; k + 1 < 199; ++k) {
+    const Prediction a = bench.records[k].goal_then, b = bench.records[k + 1].goal_then;
+    fastest = std::max(fastest, ((b.position - a.position) / kFakePeriod - Eigen::Vector3d(kFakeSpeed, 0, 0)).norm());
+  }
+  EXPECT_LT(fastest, 0.053);
+}
+
 TEST(LoopSafety, AShortLossIsOnlyCoasted) {
   FakeBench bench(60);
   bench.tracker->lost_from = 30;
@@ -67,8 +105,9 @@ TEST(LoopSafety, AfterALongerCoastTheGoalIsApproachedAtOnceAndSlowly) {
   EXPECT_EQ(bench.records[79].mode, LoopMode::FOLLOW);
   double fastest = 0;
   for (std::size_t k = 42; k + 1 < 80; ++k)
-    fastest = std::max(fastest, std::abs(bench.records[k + 1].goal_then.position.y() -
-                                         bench.records[k].goal_then.position.y()) / kFakePeriod);
+    fastest = std::max(
+        fastest,
+        std::abs(bench.records[k + 1].goal_then.position.y() - bench.records[k].goal_then.position.y()) / kFakePeriod);
   EXPECT_LT(fastest, 0.1) << "3 mm in one period would be 0.3 m/s";
   EXPECT_NEAR(bench.records[79].goal_then.position.y(), 0.003, 1e-4);
 }

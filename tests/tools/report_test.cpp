@@ -60,6 +60,31 @@ TEST_F(ReportTest, AnswersFirst) {
   EXPECT_TRUE(has("Ended by Ctrl-C after 25 s of 60 s"));
 }
 
+TEST_F(ReportTest, AChapterHasItsTablesPlotsAndPicturesTogether) {
+  Report report = report_;
+  report.plots[0].chapter = report.plots[2].chapter = report.pictures[0].chapter = report.tables[1].chapter = "Fig. 7";
+  report.tables[0].chapter = report.plots[1].chapter = "Table <5>";
+  html_ = report_html(report);
+  const auto at = [&](const std::string& part) {
+    EXPECT_EQ(count(part), 1u) << part;
+    return html_.find(part);
+  };
+  const std::vector<std::size_t> order{at("<a href=\"#chapter0\">Table &lt;5&gt;</a>"),
+                                       at("<a href=\"#chapter1\">Fig. 7</a>"),
+                                       at("<h2>Table &lt;5&gt;</h2>"),
+                                       at("1900 at 60 Hz"),
+                                       at("id=\"plot1\""),
+                                       at("<h2>Fig. 7</h2>"),
+                                       at("After 2 s of settling."),
+                                       at("id=\"plot0\""),
+                                       at("id=\"plot2\""),
+                                       at("alt=\"Endoscope, first frame"),
+                                       at("id=\"plot3\""),
+                                       at("alt=\"Last frame\"")};
+  EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+  EXPECT_EQ(json_of("data")["plots"].size(), 5u);
+}
+
 TEST_F(ReportTest, NeedsNothingFromOutside) {
   // attributes and style references that make a browser fetch something, in the page without its script bodies
   const std::string page = markup_only(html_);

@@ -123,8 +123,10 @@ struct IgtlStream::Parts {
         auto target = message_of("target", now.T_camera_target, now.time_s);
         send(target);
       }
-      auto tip = message_of("tip", now.T_camera_tip, now.time_s);
-      send(tip);
+      if (now.has_tip) {
+        auto tip = message_of("tip", now.T_camera_tip, now.time_s);
+        send(tip);
+      }
       if (now.grey.empty() || now.time_s - last_picture_s < kPictureEvery_s) continue;
       last_picture_s = now.time_s;
       auto picture = message_of(now.grey, now.time_s);
@@ -157,6 +159,7 @@ void IgtlStream::publish(const IgtlSnapshot& snapshot) {
     Parts& p = *parts_;
     p.latest.time_s = snapshot.time_s;
     p.latest.has_target = snapshot.has_target;
+    p.latest.has_tip = snapshot.has_tip;
     p.latest.T_camera_target = snapshot.T_camera_target;
     p.latest.T_camera_tip = snapshot.T_camera_tip;
     if (snapshot.grey.empty())

@@ -12,6 +12,7 @@ namespace heartservo::tools {
 struct IgtlSnapshot {
   double time_s = 0;
   bool has_target = false;  ///< seen in this frame
+  bool has_tip = true;      ///< there is a tool
   Eigen::Isometry3d T_camera_target = Eigen::Isometry3d::Identity(), T_camera_tip = Eigen::Isometry3d::Identity();
   cv::Mat grey;  ///< CV_8UC1, or empty; read only during publish()
 };

@@ -52,13 +52,35 @@ ReportPlot trajectory(const StoredRun& run, const TimeTable& table, const std::s
 }
 
 // The start of the run with its region, and the trajectories (the second picture of a track run).
-void add_pictures(PaperPage& page, const StoredRun& run, const std::string& figure) {
+void add_pictures(PaperPage& page, const StoredRun& run) {
   auto pictures = read_pictures(run.folder);
   for (std::size_t i = 0; i < std::min<std::size_t>(2, pictures.size()); ++i) {
-    pictures[i].caption = figure + ": " + pictures[i].caption;
     page.report.pictures.push_back(std::move(pictures[i]));
   }
 }
+
+// What is added to the page while it lives stands under its title.
+class Chapter {
+ public:
+  Chapter(Report& report, std::string title)
+      : report_(report),
+        title_(std::move(title)),
+        tables_(report.tables.size()),
+        plots_(report.plots.size()),
+        pictures_(report.pictures.size()) {}
+  ~Chapter() {
+    for (std::size_t i = tables_; i < report_.tables.size(); ++i) report_.tables[i].chapter = title_;
+    for (std::size_t i = plots_; i < report_.plots.size(); ++i) report_.plots[i].chapter = title_;
+    for (std::size_t i = pictures_; i < report_.pictures.size(); ++i) report_.pictures[i].chapter = title_;
+  }
+  Chapter(const Chapter&) = delete;
+  Chapter& operator=(const Chapter&) = delete;
+
+ private:
+  Report& report_;
+  std::string title_;
+  std::size_t tables_, plots_, pictures_;
+};
 
 int number_in(const std::string& config, const char* key) {
   const YAML::Node node = YAML::Load(config)["artificial"][key];
@@ -95,6 +117,7 @@ void fill_paper_page(const fs::path& runs, const std::vector<Experiment>& experi
   ReportTable commands{
       "How each was made", {"experiment", "command"}, {}, "Each run folder has a page of its own.", true};
   for (const auto& experiment : experiments) {
+    const Chapter chapter(report, experiment.title);
     commands.rows.push_back({experiment.title, command_line(experiment)});
     if (experiment.name == "sequence") {
       add_motion(runs, page);
@@ -117,11 +140,10 @@ void fill_paper_page(const fs::path& runs, const std::vector<Experiment>& experi
     }
     if (experiment.name == "figure7") report.tables.push_back(paper_figure_7(s["trackers"], speculars).table);
     const bool eight = experiment.name.starts_with("figure8");
-    if (eight) report.tables.push_back(paper_swings(s, experiment.title));
-    report.plots.push_back(trajectory(run, table, experiment.title + ", vertical", "v_px"));
-    if (experiment.name != "figure6")
-      report.plots.push_back(trajectory(run, table, experiment.title + ", horizontal", "u_px"));
-    add_pictures(page, run, experiment.title);
+    if (experiment.name != "figure7") report.tables.push_back(paper_swings(s, eight ? "Fig. 8" : "Fig. 6"));
+    report.plots.push_back(trajectory(run, table, "Vertical displacement", "v_px"));
+    if (experiment.name != "figure6") report.plots.push_back(trajectory(run, table, "Horizontal displacement", "u_px"));
+    add_pictures(page, run);
   }
   report.tables.push_back(commands);
   report.title = "The paper, reproduced";

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -40,9 +41,10 @@ std::string plot_figure(const ReportPlot& plot, std::size_t index, const std::ve
   return html + "</figure>\n";
 }
 
-std::string first_plot(const Report& report) {
-  if (report.plots.empty()) return "";
-  return plot_figure(report.plots[0], 0, report.states);
+bool has_first_plot(const Report& report) { return !report.plots.empty() && report.plots[0].chapter.empty(); }
+
+const ReportPicture* first_picture(const Report& report) {
+  return report.pictures.empty() || !report.pictures[0].chapter.empty() ? nullptr : &report.pictures[0];
 }
 
 std::string section(const char* label, const char* kind, const std::string& content) {
@@ -50,16 +52,12 @@ std::string section(const char* label, const char* kind, const std::string& cont
   return fmt::format("<section class=\"{}\" aria-label=\"{}\">\n{}</section>\n", kind, label, content);
 }
 
-std::string other_plots(const Report& report) {
+// Of a chapter, or of none: the first of those is on the first screen.
+std::string plots(const Report& report, const std::string& chapter) {
   std::string html;
-  for (std::size_t i = 1; i < report.plots.size(); ++i) html += plot_figure(report.plots[i], i, {});
-  const std::string hint =
-      report.plots.empty()
-          ? ""
-          : "<p class=\"quiet hint\" id=\"hint\">Drag across a plot to zoom, shift and drag to pan, "
-            "double-click for the whole run; two fingers on a touch screen. With the keyboard: arrows, "
-            "+, − and 0.</p>\n";
-  return hint + section("Plots over time", "plots", html);
+  for (std::size_t i = has_first_plot(report); i < report.plots.size(); ++i)
+    if (report.plots[i].chapter == chapter) html += plot_figure(report.plots[i], i, {});
+  return section("Plots over time", "plots", html);
 }
 
 std::string chart_scripts(const Report& report) {
@@ -70,17 +68,42 @@ std::string chart_scripts(const Report& report) {
       embedded::chart_script());
 }
 
-std::string other_pictures(const Report& report) {
+std::string pictures(const Report& report, const std::string& chapter) {
   std::string html;
-  for (std::size_t i = 1; i < report.pictures.size(); ++i) html += markup::image(report.pictures[i]);
-  if (!report.video.file.empty()) html += markup::video(report.video);
+  for (std::size_t i = first_picture(report) != nullptr; i < report.pictures.size(); ++i)
+    if (report.pictures[i].chapter == chapter) html += markup::image(report.pictures[i]);
+  if (chapter.empty() && !report.video.file.empty()) html += markup::video(report.video);
   return section("Pictures", "pictures", html);
 }
 
-std::string tables(const Report& report) {
+std::string tables(const Report& report, const std::string& chapter) {
   std::string html;
-  for (const auto& table : report.tables) html += markup::table(table);
+  for (const auto& table : report.tables)
+    if (table.chapter == chapter) html += markup::table(table);
   return section("Numbers", "tables", html);
+}
+
+std::string chapters(const Report& report) {
+  std::vector<std::string> names;
+  for (const auto& table : report.tables)
+    if (!table.chapter.empty() && std::find(names.begin(), names.end(), table.chapter) == names.end())
+      names.push_back(table.chapter);
+  std::string links, html;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    links += fmt::format("<li><a href=\"#chapter{}\">{}</a></li>\n", i, escaped(names[i]));
+    html +=
+        fmt::format("<section class=\"chapter\" id=\"chapter{}\">\n<h2>{}</h2>\n{}{}{}</section>\n", i,
+                    escaped(names[i]), tables(report, names[i]), plots(report, names[i]), pictures(report, names[i]));
+  }
+  return links.empty() ? "" : "<nav aria-label=\"Contents\"><ul>\n" + links + "</ul></nav>\n" + html;
+}
+
+std::string hint(const Report& report) {
+  return report.plots.empty()
+             ? ""
+             : "<p class=\"quiet hint\" id=\"hint\">Drag across a plot to zoom, shift and drag to pan, "
+               "double-click for the whole run; two fingers on a touch screen. With the keyboard: arrows, "
+               "+, − and 0.</p>\n";
 }
 
 std::string pretty(const nlohmann::json& json) {
@@ -109,7 +132,8 @@ std::string report_html(const Report& report) {
   std::string notices;
   for (const auto& notice : report.notices)
     notices += fmt::format("<p class=\"notice\" role=\"note\">{}</p>\n", escaped(notice));
-  const bool pair = !report.plots.empty() && !report.pictures.empty();
+  const bool first = has_first_plot(report);
+  const ReportPicture* picture = first_picture(report);
   std::string_view page = embedded::report_template();
   return markup::filled(
       page,
@@ -120,13 +144,15 @@ std::string report_html(const Report& report) {
                       : fmt::format("<p class=\"number\">{} <small>{}</small></p>", escaped(report.headline_number),
                                     escaped(report.headline_unit))},
        {"headline", escaped(report.headline)},
-       {"first_kind", pair ? "first pair" : "first"},
-       {"first_plot", first_plot(report)},
-       {"first_picture", report.pictures.empty() ? "" : markup::image(report.pictures[0])},
+       {"first_kind", first && picture ? "first pair" : "first"},
+       {"first_plot", first ? plot_figure(report.plots[0], 0, report.states) : ""},
+       {"first_picture", picture ? markup::image(*picture) : ""},
+       {"hint", hint(report)},
        {"charts", section("Charts", "charts", chart_figures(report.charts))},
-       {"plots", other_plots(report)},
-       {"pictures", other_pictures(report)},
-       {"tables", tables(report)},
+       {"chapters", chapters(report)},
+       {"plots", plots(report, "")},
+       {"pictures", pictures(report, "")},
+       {"tables", tables(report, "")},
        {"details", details(report)},
        {"made_by", made_by(report.summary)},
        {"credits", report.charts.empty() ? "Plots by dygraphs 2.2.1, © Dan Vanderkam and contributors, MIT licence."

@@ -25,6 +25,7 @@ struct ReportPicture {
   std::string caption;
   cv::Mat bgr;                        ///< 8 bit, 3 channels or grey; wider than 1280 px it is reduced to that
   std::vector<PictureKey> keys = {};  ///< shown as a legend below
+  std::string chapter = {};           ///< "": among the pictures of the page; else see Report
 };
 
 /// A short film inside the page, WebM.
@@ -49,6 +50,7 @@ struct ReportPlot {
   const TimeTable* table = nullptr;  ///< nullptr: the report's
   double log_from = 0;               ///< above 0: a logarithmic axis, on which smaller values lie at this one
   bool about_mean = false;           ///< each series less its mean: only the motion matters
+  std::string chapter = {};
 };
 
 /// Rows of text: key and value (no header), or a comparison with a header. Cells that look like numbers align right.
@@ -58,8 +60,11 @@ struct ReportTable {
   std::vector<std::vector<std::string>> rows;
   std::string note;
   bool wide = false;  ///< over the whole page; else only with more than five columns
+  std::string chapter = {};
 };
 
+/// Tables, plots and pictures that name the same chapter stand together under that heading; the chapters come first, in
+/// the order of their tables, with a list of links above them.
 struct Report {
   std::string title;                    ///< "servo pig_2007"
   std::string headline;                 ///< the answer in one sentence: "The tip stands still to 0.41 mm RMS ..."

@@ -57,6 +57,16 @@
     return v => (+v.toFixed(decimals) || 0).toFixed(decimals);
   }
 
+  // A logarithmic axis has a line at every power of ten that there is room for.
+  function decades(low, high, pixels) {
+    const from = Math.ceil(Math.log10(low) - 1e-9), to = Math.floor(Math.log10(high) + 1e-9), ticks = [];
+    const every = Math.max(1, Math.ceil((to - from + 1) * 24 / pixels));
+    const raised = e => String(e).replace(/-/, '⁻').replace(/\d/g, d => '⁰¹²³⁴⁵⁶⁷⁸⁹'[d]);
+    for (let e = to; e >= from; e -= every)
+      ticks.push({v: Math.pow(10, e), label: Math.abs(e) < 3 ? String(+Math.pow(10, e).toPrecision(1)) : '10' + raised(e)});
+    return ticks;
+  }
+
   // The names of the lines, with their values where the pointer is; the time stands beside the unit.
   function legend(plot, d) {
     const marks = pens(plot);
@@ -141,7 +151,7 @@
       axes: {
         x: {valueFormatter: x_value(plot), axisLabelFormatter: x_label(plot), pixelsPerLabel: 70},
         y: Object.assign({valueFormatter: value_format(plot, table), axisLabelWidth: 44, pixelsPerLabel: 32},
-            plot.log_from > 0 ? {axisLabelFormatter: short} : {})
+            plot.log_from > 0 ? {ticker: decades} : {})
       },
       // the troubles of several trackers would lie over each other: the gaps in their lines tell
       underlayCallback: (context, area, me) => troubles.length === 1 && over_time(plot) && paint(troubles[0], context, me, () => area.y,

@@ -45,7 +45,7 @@ TEST_F(Capture, NoWindowWithoutADisplay) {
   const char* display = std::getenv("DISPLAY");
   if (display != nullptr && *display != '\0') GTEST_SKIP() << "there is a display";
   sequence("frames", 3);
-  expect_refused(2, {"track", "frames", "--show"}, {"--show: there is no display"});
+  expect_refused(4, {"track", "frames", "--show"}, {"--show: there is no display"});
 }
 
 TEST_F(Capture, ARecordingIsASource) {

@@ -78,6 +78,8 @@ class DocumentedCommands : public CommandLine {
     bool before_out = false;
     words >> word >> command;
     if (command == "paper" || command == "sweep") return "takes too long for a unit test";
+    static const std::regex window(" --(show|select)( |$)");
+    if (std::regex_search(line, window)) return "opens a window; live_window_test.cpp has a screen for it";
     for (; words >> word; before = word) {
       if (word[0] == '#' || word[0] == '>') break;
       if (word[0] == '-' || before == "--out" || before == "--into") continue;
@@ -164,7 +166,8 @@ TEST_P(DocumentedHelp, ItsExamplesWork) {
 
 INSTANTIATE_TEST_SUITE_P(Commands, DocumentedHelp,
                          testing::Values("heartservo", "servo", "track", "render", "scene", "calibrate", "camera",
-                                         "analyse", "beats", "stabilise", "paper", "report", "doctor", "capture"),
+                                         "analyse", "beats", "stabilise", "paper", "report", "doctor", "capture",
+                                         "texture", "predict", "sweep"),
                          [](const auto& command) { return command.param; });
 
 TEST_F(DocumentedCommands, AWrongLineIsNoticed) {

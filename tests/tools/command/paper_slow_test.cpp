@@ -18,7 +18,7 @@ TEST_F(PaperCommand, HasEveryTableAndFigure) {
                            "track scenes/depth_rail.yaml", "left out: give --data"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   const auto summary = summary_of("paper");
-  EXPECT_EQ(summary["tables"].size(), 7u);
+  EXPECT_EQ(summary["tables"].size(), 8u);
   EXPECT_LT(summary["depth_std_mm"]["landmark_dense"].get<double>(), 0.34);
   for (const char* run : {"depth", "sequence", "motion1", "motion2", "table5", "figure6", "figure7", "figure8"})
     expect_complete(std::string("paper/") + run);

@@ -61,6 +61,25 @@ TEST_F(ReportCommand, ForeignAndUnfinishedFoldersAreRefused) {
   expect_refused(2, {"report"}, {"run is required"});
 }
 
+TEST_F(ReportCommand, RunsOfOthersOrWithoutFramesAreSaidInOneLine) {
+  fs::create_directory(folder_ / "run");
+  write_text(folder_ / "run/config.yaml", "a: 1");
+  write_text(folder_ / "run/summary.json", "{\"command\": \"servo\"}");
+  write_text(folder_ / "run/frames.csv", "time_s,x\n0,1\n1,2\n");
+  expect_refused(3, {"report", "run"}, {"run: frames.csv or summary.json", "no column", "run it again"});
+  write_text(folder_ / "run/frames.csv", "time_s,x\n0,1\n1,2,3\n");
+  expect_refused(3, {"report", "run"}, {"frames.csv:3", "3 cells under 2 columns"});
+  write_text(folder_ / "run/frames.csv", "");
+  const Outcome empty = run({"report", "run"});
+  EXPECT_EQ(empty.code, 0) << empty.err;
+  EXPECT_NE(empty.out.find("without frames"), std::string::npos) << empty.out;
+  write_text(folder_ / "run/summary.json", "[1]");
+  expect_refused(3, {"report", "run"}, {"does not say which command"});
+  fs::create_directories(folder_ / "cut.partial");
+  write_text(folder_ / "cut.partial/incomplete", "");
+  expect_refused(3, {"report", "cut.partial"}, {"not finished"});
+}
+
 TEST_F(ReportCommand, AServoRunHasAShortFilmAndItsStillView) {
   ASSERT_EQ(run({"servo", scene("pig_2007"), "--frames", "60", "--settle-s", "0.2", "--quiet", "--out", "run"}).code, 0);
   EXPECT_GT(fs::file_size(folder_ / "run/video.webm"), 1000u);

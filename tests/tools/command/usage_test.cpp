@@ -1,4 +1,6 @@
 // Help, version, lists, and what happens to a line that is wrong.
+#include <sstream>
+
 #include "tests/tools/command/command_fixture.hpp"
 
 namespace heartservo::test {
@@ -10,7 +12,13 @@ TEST_F(Usage, EveryCommandHasHelpWithAnExample) {
   const Outcome program = run({"--help"});
   EXPECT_EQ(program.code, 0);
   EXPECT_NE(program.out.find("Example: heartservo "), std::string::npos) << program.out;
-  for (const std::string command : {"servo", "track", "render", "scene", "calibrate", "camera", "stabilise", "capture"}) {
+  // the commands as the program itself lists them, so that none is forgotten
+  std::vector<std::string> commands;
+  std::istringstream lines(program.out.substr(program.out.find("\nSubcommands:\n") + 14));
+  for (std::string line; std::getline(lines, line) && (line.empty() || line[0] == ' ');)
+    if (line.size() > 3 && line[2] != ' ') commands.push_back(line.substr(2, line.find(' ', 2) - 2));
+  EXPECT_EQ(commands.size(), 16u) << testing::PrintToString(commands);
+  for (const std::string& command : commands) {
     EXPECT_NE(program.out.find("\n  " + command + " "), std::string::npos) << command << " is not in\n" << program.out;
     const Outcome o = run({command, "--help"});
     EXPECT_EQ(o.code, 0);
