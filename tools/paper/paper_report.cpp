@@ -134,15 +134,15 @@ void fill_paper_page(const fs::path& runs, const std::vector<Experiment>& experi
     }
     const TimeTable& table = page.tables.emplace_back(displacements(run));
     const int speculars = experiment.name.starts_with("figure8") ? 0 : number_in(run.config_yaml, "speculars");
-    if (experiment.name == "table5") {
+    const bool five = experiment.name == "table5";
+    if (five)
       report.tables.push_back(paper_table_5(s["trackers"], number_in(run.config_yaml, "noise_grey"), speculars).table);
-      continue;
-    }
-    if (experiment.name == "figure7") report.tables.push_back(paper_figure_7(s["trackers"], speculars).table);
-    const bool eight = experiment.name.starts_with("figure8");
-    if (experiment.name != "figure7") report.tables.push_back(paper_swings(s, eight ? "Fig. 8" : "Fig. 6"));
+    else if (experiment.name == "figure7")
+      report.tables.push_back(paper_figure_7(s["trackers"], speculars).table);
+    else
+      report.tables.push_back(paper_swings(s));
     report.plots.push_back(trajectory(run, table, "Vertical displacement", "v_px"));
-    if (experiment.name != "figure6") report.plots.push_back(trajectory(run, table, "Horizontal displacement", "u_px"));
+    if (!five) report.plots.push_back(trajectory(run, table, "Horizontal displacement", "u_px"));
     add_pictures(page, run);
   }
   report.tables.push_back(commands);

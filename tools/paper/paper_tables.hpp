@@ -16,7 +16,7 @@ ReportTable paper_table_3(const std::array<nlohmann::json, 2>& landmarks);
 /// Table 4: largest accelerations of the two landmarks.
 ReportTable paper_table_4(const std::array<nlohmann::json, 2>& landmarks);
 
-/// Of a figure of which the paper prints no numbers: swings of the displacement, lost frames. `summary`: of `track`.
-ReportTable paper_swings(const nlohmann::json& summary, const std::string& figure);
+/// Fig. 8, of which the paper prints no numbers: swings of the displacement, lost frames. `summary`: of `track`.
+ReportTable paper_swings(const nlohmann::json& summary);
 
 }  // namespace heartservo::tools

@@ -11,8 +11,10 @@ using ReportCommand = CommandLine;
 
 TEST_F(ReportCommand, OneRunAndTwoSideBySide) {
   for (const char* law : {"ibvs", "mpc"})
-    ASSERT_EQ(run({"servo", scene("pig_2007"), "--frames", "40", "--controller", law, "--no-video", "--quiet", "--out",
-                   law}).code, 0);
+    ASSERT_EQ(
+        run({"servo", scene("pig_2007"), "--frames", "40", "--controller", law, "--no-video", "--quiet", "--out", law})
+            .code,
+        0);
   const Outcome one = run({"report", "mpc", "--out", "one.html"});
   EXPECT_EQ(one.code, 0) << one.err;
   EXPECT_NE(one.out.find("report: "), std::string::npos);
@@ -81,7 +83,8 @@ TEST_F(ReportCommand, RunsOfOthersOrWithoutFramesAreSaidInOneLine) {
 }
 
 TEST_F(ReportCommand, AServoRunHasAShortFilmAndItsStillView) {
-  ASSERT_EQ(run({"servo", scene("pig_2007"), "--frames", "60", "--settle-s", "0.2", "--quiet", "--out", "run"}).code, 0);
+  ASSERT_EQ(run({"servo", scene("pig_2007"), "--frames", "60", "--settle-s", "0.2", "--quiet", "--out", "run"}).code,
+            0);
   EXPECT_GT(fs::file_size(folder_ / "run/video.webm"), 1000u);
   EXPECT_NE(read_text(folder_ / "run/report.html").find("<video"), std::string::npos);
   const json still = summary_of("run")["still_view"];
